@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One compilation: what was asked, and what came of it.
+#ifndef ENF_CLI_JOB_H
+#define ENF_CLI_JOB_H
+
+#include "build/build.h"
+#include "cli/options.h"
+#include "cli/progress.h"
+
+/// The options that shape the result. Start with cli_settings_default.
+typedef struct cli_settings {
+    int tetrahedralizer, heuristic, keep, pvs, threads;
+    const char *stop;
+    double weld, plane_tolerance; ///< < 0: not given
+    cli_texts exclude, detail;
+    cli_points spawns;
+} cli_settings;
+
+cli_settings cli_settings_default(void);
+void cli_settings_free(cli_settings *settings);
+
+extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const cli_keeps[],
+                                                                              *const cli_pvs_methods[];
+
+/// Rows of an option table that fill the cli_settings `s`.
+#define CLI_SETTINGS_OPTIONS(s)                                                                                \
+    {"--tetrahedralizer",  0,    CLI_CHOICE, &(s).tetrahedralizer, "cgal|tetgen", "default cgal",              \
+     cli_tetrahedralizers, false},                                                                             \
+        {"--heuristic",  0,    CLI_CHOICE, &(s).heuristic, "NAME", "aspect (default) or aspect-scaled",        \
+         cli_heuristics, false},                                                                               \
+        {"--stop", 0, CLI_TEXT, &(s).stop, "RULE", "auto (default), weight=W or cells=N", NULL, false},        \
+        {"--keep",  0,      CLI_CHOICE,                                                                        \
+         &(s).keep, "RULE", "regions to keep: auto (default), all, outside, spawn",                            \
+         cli_keeps, false},                                                                                    \
+        {"--spawn", 0,    CLI_POINTS, &(s).spawns, "X,Y,Z", "a point that is in a room; may be repeated",      \
+         NULL,      false},                                                                                    \
+        {"--pvs",         0,    CLI_CHOICE, &(s).pvs, "METHOD", "none (default); visibility is not built yet", \
+         cli_pvs_methods, false},                                                                              \
+        {"--exclude",  0,      CLI_TEXTS,                                                                      \
+         &(s).exclude, "GLOB", "leave out groups whose name matches; may be repeated",                         \
+         NULL,         false},                                                                                 \
+        {"--detail",  0,      CLI_TEXTS,                                                                       \
+         &(s).detail, "GLOB", "groups that are drawn but do not cut; may be repeated",                         \
+         NULL,        false},                                                                                  \
+        {"--weld", 0,    CLI_LENGTH, &(s).weld, "D", "corners closer than D world units become one",           \
+         NULL,     false},                                                                                     \
+        {"--plane-tolerance",                                                                                  \
+         0,                                                                                                    \
+         CLI_LENGTH,                                                                                           \
+         &(s).plane_tolerance,                                                                                 \
+         "D",                                                                                                  \
+         "coordinates within D world units are made equal; default 0",                                         \
+         NULL,                                                                                                 \
+         false},                                                                                               \
+    {                                                                                                          \
+        "--threads", 0, CLI_COUNT, &(s).threads, "N", "default: one per core; the result is the same", NULL,   \
+            false                                                                                              \
+    }
+
+typedef struct cli_job {
+    const cli_settings *settings;
+    enf_build_options options;
+    char *options_json; ///< what shapes the result, on one line
+    enf_build build;
+    double read_seconds, write_seconds, seconds;
+    uint64_t peak_bytes, file_size;
+} cli_job;
+
+/// Translates the settings. ENF_BAD_USAGE with words for those that make no sense. Free the job in any case.
+enf_status cli_job_prepare(cli_job *job, const cli_settings *settings, enf_error *error);
+
+/// Reads the inputs and runs the stages.
+enf_status cli_job_run(cli_job *job, const cli_texts *inputs, cli_progress *progress, enf_error *error);
+
+void cli_job_free(cli_job *job);
+
+/// The most memory that the process has had so far.
+uint64_t cli_peak_bytes(void);
+
+/// Kept fine cells, portals and so on, counted from a finished build.
+typedef struct cli_counts {
+    int64_t fine_active, fine_discarded, regions_kept, spawns_in_cells, rejected[ENF_REJECT_COUNT];
+} cli_counts;
+
+cli_counts cli_job_count(const cli_job *job);
+
+#endif

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Predicates on points with whole-number coordinates, |x| <= 2^53, held in doubles. Always right: a
+// floating-point filter first, exact integers where it cannot tell.
+#ifndef ENF_BASE_EXACT_H
+#define ENF_BASE_EXACT_H
+
+/// Sign of det(b - a, c - a, d - a): +1 if d is in front of the plane through a, b, c (they turn
+/// counter-clockwise seen from d), -1 behind it, 0 if the four lie in one plane.
+int enf_points_orient(const double a[3], const double b[3], const double c[3], const double d[3]);
+
+/// The largest power of two that divides all three coordinates of all `count` points; 2^53 if they are all 0.
+/// Sums and products of multiples of a unit are exact in a double while they stay below 2^53 units.
+double enf_points_unit(const double *const *points, int count);
+
+#endif

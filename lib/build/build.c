@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The recipe: clean > tetrahedralize > split > connect > colour > decimate > portals. Each stage takes what
+// the one before it leaves.
+#include "build/build.h"
+
+#include "base/array.h"
+#include "base/timer.h"
+#include "build/arrangement.h"
+#include "build/connect.h"
+#include "build/split.h"
+#include "shim/shim.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+/// What lives only while the recipe runs.
+typedef struct kitchen {
+    enf_build *build;
+    const enf_build_options *options;
+    enf_error *error;
+    enf_tet_mesh tets; ///< until the arrangement takes them
+    enf_arrangement arrangement;
+    enf_crossing *crossings;
+    int32_t *node_of; ///< fine cell to node of the graph
+    const char *stage;
+} kitchen;
+
+void enf_build_free(enf_build *build) {
+    enf_soup_free(&build->soup);
+    enf_mesh_free(&build->mesh);
+    enf_complex_free(&build->complex);
+    enf_regions_free(&build->regions);
+    enf_decimation_free(&build->decimation);
+    enf_portals_free(&build->portals);
+    free(build->cell_of);
+    memset(build, 0, sizeof *build);
+}
+
+static void say(kitchen *k, const char *format, ...) ENF_PRINTF(2, 3);
+
+/// What the stage did and what it did not have to do.
+static void say(kitchen *k, const char *format, ...) {
+    enf_stage_report *report = &k->build->stages[k->build->stage_count - 1];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(report->why, sizeof report->why, format, arguments);
+    va_end(arguments);
+}
+
+static bool tell(void *user, double fraction) {
+    kitchen *k = user;
+    return !k->options->progress || k->options->progress(k->options->progress_user, k->stage, fraction);
+}
+
+// ---------------------------------------------------------------------------------------------- stages
+
+static enf_status clean(kitchen *k) {
+    enf_mesh *mesh = &k->build->mesh;
+    enf_status status = enf_mesh_clean(mesh, &k->build->soup, &k->options->clean, k->error);
+    if (status != ENF_OK) return status;
+    say(k, "%zu polygons kept, %zu lines rejected, %zu points welded, %zu polygons triangulated",
+        mesh->polygon_count, k->build->soup.rejected_count, mesh->welded, mesh->triangulated);
+    return ENF_OK;
+}
+
+static enf_status tetrahedralize(kitchen *k) {
+    const enf_mesh *mesh = &k->build->mesh;
+    enf_tetrahedra made = {0};
+    bool tetgen = k->options->tetrahedralizer == ENF_TETRAHEDRALIZER_TETGEN;
+    enf_status status = tetgen ? enf_shim_delaunay_tetgen(mesh->points, mesh->point_count, &made, k->error)
+                               : enf_shim_delaunay_cgal(mesh->points, mesh->point_count, &made, k->error);
+    if (status != ENF_OK) return status;
+    status = enf_tet_mesh_pair(&k->tets, made.corners, made.count, (int32_t)mesh->point_count, k->error);
+    if (status == ENF_OK) say(k, "%d tetrahedra by %s", (int)k->tets.count, tetgen ? "TetGen" : "CGAL");
+    return status;
+}
+
+static enf_status split(kitchen *k) {
+    enf_complex *complex = &k->build->complex;
+    enf_status status =
+        enf_arrangement_make(&k->arrangement, &k->build->mesh, k->tets, k->options->threads, k->error);
+    memset(&k->tets, 0, sizeof k->tets); // taken, or freed
+    if (status != ENF_OK || !tell(k, 0.5)) return status;
+    status = enf_complex_split(complex, &k->arrangement, k->options->threads, &k->crossings, k->error);
+    if (status != ENF_OK) return status;
+    say(k, "%d of %d tetrahedra cut; the others already carry their polygons", (int)complex->tetrahedra_cut,
+        (int)complex->tetrahedron_count);
+    return ENF_OK;
+}
+
+static enf_status connect(kitchen *k) {
+    enf_complex *complex = &k->build->complex;
+    enf_status status =
+        enf_complex_connect(complex, &k->arrangement, k->crossings, k->options->threads, k->error);
+    if (status != ENF_OK) return status;
+    uint64_t all = complex->predicates_filter + complex->predicates_exact;
+    say(k, "%d facets in %d pieces; %.3f %% of %.3g predicates needed exact arithmetic",
+        (int)complex->facet_count, (int)complex->pieces.count,
+        all ? 100.0 * (double)complex->predicates_exact / (double)all : 0, (double)all);
+    return ENF_OK;
+}
+
+static enf_status colour(kitchen *k) {
+    enf_build *build = k->build;
+    enf_status status = enf_regions_colour(&build->regions, &build->complex, &build->mesh,
+                                           &k->arrangement.tets, k->options->keep, k->error);
+    enf_arrangement_free(&k->arrangement);
+    free(k->crossings);
+    k->crossings = NULL;
+    if (status != ENF_OK) return status;
+    int32_t kept = 0;
+    for (int32_t r = 0; r < build->regions.region_count; r++) kept += build->regions.kept[r];
+    say(k, "%d of %d regions kept", (int)kept, (int)build->regions.region_count);
+    return ENF_OK;
+}
+
+static enf_status decimate(kitchen *k) {
+    enf_build *build = k->build;
+    const enf_complex *complex = &build->complex;
+    k->node_of = enf_array_new((size_t)complex->cell_count, sizeof *k->node_of);
+    build->cell_of = enf_array_new((size_t)complex->cell_count, sizeof *build->cell_of);
+    if (!k->node_of || !build->cell_of) return enf_fail_memory(k->error, "the cells");
+    int32_t nodes = 0;
+    for (int32_t c = 0; c < complex->cell_count; c++) {
+        k->node_of[c] = build->regions.kept[build->regions.cell_region[c]] ? nodes++ : -1;
+    }
+    enf_graph graph;
+    enf_status status = enf_graph_build(&graph, complex, k->node_of, nodes, k->error);
+    if (status != ENF_OK) return status;
+    build->portals_initial = 0;
+    for (int32_t p = 0; p < graph.piece_count; p++) build->portals_initial += graph.piece_open[p];
+    double unit = build->mesh.frame.step * 0x1p53;
+    status = enf_graph_decimate(&graph, k->options->heuristic, &k->options->stop, unit, tell, k,
+                                &build->decimation, k->error);
+    enf_graph_free(&graph);
+    if (status != ENF_OK) return status;
+    build->cell_count = build->decimation.cell_count;
+    for (int32_t c = 0; c < complex->cell_count; c++) {
+        build->cell_of[c] = k->node_of[c] < 0 ? -1 : build->decimation.cell_of[k->node_of[c]];
+    }
+    say(k, "%d cells of %d; %zu weights computed for %zu collapses", (int)build->cell_count, (int)nodes,
+        build->decimation.evaluations, build->decimation.collapse_count);
+    return ENF_OK;
+}
+
+static enf_status portals(kitchen *k) {
+    enf_build *build = k->build;
+    enf_status status = enf_portals_find(&build->portals, &build->complex, build->cell_of, k->error);
+    if (status != ENF_OK) return status;
+    say(k, "%d openings; %d pieces joined to %d polygons", (int)build->portals.opening_count,
+        (int)build->portals.pieces_merged, (int)build->portals.polygons.count);
+    return ENF_OK;
+}
+
+// ---------------------------------------------------------------------------------------------- the recipe
+
+static enf_status run_stage(kitchen *k, const char *name, enf_status (*stage)(kitchen *)) {
+    k->stage = name;
+    if (!tell(k, 0)) return enf_fail(k->error, ENF_NO_RESOURCES, "cancelled in stage '%s'", name);
+    enf_stage_report *report = &k->build->stages[k->build->stage_count++];
+    *report = (enf_stage_report){.name = name, .ran = true};
+    double start = enf_timer_now();
+    enf_status status = stage(k);
+    report->seconds = enf_timer_now() - start;
+    return status;
+}
+
+static void skip_stage(kitchen *k, const char *name, const char *why) {
+    k->build->stages[k->build->stage_count++] = (enf_stage_report){.name = name};
+    say(k, "%s", why);
+}
+
+enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf_error *error) {
+    static const struct {
+        const char *name;
+        enf_status (*run)(kitchen *);
+    } recipe[] = {
+        {"clean", clean},     {"tetrahedralize", tetrahedralize},
+        {"split", split},     {"connect", connect},
+        {"colour", colour},   {"decimate", decimate},
+        {"portals", portals},
+    };
+    kitchen k = {.build = build, .options = options, .error = error};
+    double start = enf_timer_now();
+    enf_status status = ENF_OK;
+    build->stage_count = 0;
+    for (size_t i = 0; i < sizeof recipe / sizeof *recipe && status == ENF_OK; i++) {
+        status = run_stage(&k, recipe[i].name, recipe[i].run);
+    }
+    if (status == ENF_OK) skip_stage(&k, "visibility", "no PVS asked for");
+    enf_tet_mesh_free(&k.tets);
+    enf_arrangement_free(&k.arrangement);
+    free(k.crossings);
+    free(k.node_of);
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    build->seconds = enf_timer_now() - start;
+    build->peak_bytes = (uint64_t)usage.ru_maxrss * 1024;
+    return status;
+}

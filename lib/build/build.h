@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The recipe: soup to world, stage by stage, with everything the stages leave behind.
+#ifndef ENF_BUILD_BUILD_H
+#define ENF_BUILD_BUILD_H
+
+#include "build/decimate.h"
+#include "build/portal.h"
+#include "build/region.h"
+
+typedef enum enf_tetrahedralizer { ENF_TETRAHEDRALIZER_CGAL, ENF_TETRAHEDRALIZER_TETGEN } enf_tetrahedralizer;
+
+/// Called now and then: stage name, 0..1 of that stage. Return false to cancel.
+typedef bool enf_progress(void *user, const char *stage, double fraction);
+
+typedef struct enf_build_options {
+    enf_clean_options clean;
+    enf_tetrahedralizer tetrahedralizer;
+    enf_heuristic heuristic;
+    enf_stop stop;
+    enf_keep keep;
+    int threads;
+    enf_progress *progress; ///< may be null
+    void *progress_user;
+} enf_build_options;
+
+#define ENF_STAGE_COUNT_MAX 16
+
+typedef struct enf_stage_report {
+    const char *name;
+    double seconds;
+    bool ran;
+    char why[120]; ///< why it was skipped, or what it skipped
+} enf_stage_report;
+
+/// A compiled world, still in the builder's own form. Written to a file by format/write.h.
+typedef struct enf_build {
+    enf_soup soup;
+    enf_mesh mesh;
+    enf_complex complex;
+    enf_regions regions;
+    enf_decimation decimation; ///< over kept fine cells only
+    int32_t *cell_of;          ///< per fine cell of the complex: final cell, or -1 (discarded)
+    int32_t cell_count;        ///< final cells
+    enf_portals portals;
+
+    int64_t portals_initial; ///< pairs of kept fine cells with open area between them
+    enf_stage_report stages[ENF_STAGE_COUNT_MAX];
+    int stage_count;
+    double seconds;
+    uint64_t peak_bytes;
+} enf_build;
+
+void enf_build_free(enf_build *build);
+
+/// Runs clean to portals over build->soup (already read). On failure the build can only be freed.
+enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf_error *error);
+
+#endif

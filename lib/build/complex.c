@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/complex.h"
+
+#include "base/array.h"
+#include "build/loop.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void enf_complex_free(enf_complex *complex) {
+    void *arrays[] = {
+        complex->planes,           complex->vertex_planes, complex->vertex_position, complex->tetrahedra,
+        complex->tetrahedron_root, complex->node_plane,    complex->node_child,      complex->node_facet,
+        complex->cell_tetrahedron, complex->cell_face,     complex->face_facet,      complex->face_side,
+        complex->facet_plane,      complex->facet_hull,    complex->facet_cover,     complex->facet_piece,
+        complex->cover_polygon,    complex->cover_side,    complex->piece_face,      complex->piece_cover,
+        complex->seen_offset,      complex->seen};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    enf_loops_free(&complex->faces);
+    enf_loops_free(&complex->covers);
+    enf_loops_free(&complex->pieces);
+    memset(complex, 0, sizeof *complex);
+}
+
+int32_t *enf_complex_face_cells(const enf_complex *complex) {
+    int32_t *cells = enf_array_new((size_t)complex->faces.count, sizeof *cells);
+    if (!cells) return NULL;
+    for (int32_t c = 0; c < complex->cell_count; c++) {
+        for (int32_t f = complex->cell_face[c]; f < complex->cell_face[c + 1]; f++) cells[f] = c;
+    }
+    return cells;
+}
+
+double enf_complex_cell_volume(const enf_complex *complex, int32_t cell) {
+    const enf_loops *faces = &complex->faces;
+    const double(*at)[3] = (const double(*)[3])complex->vertex_position;
+    int32_t first = complex->cell_face[cell];
+    const double *origin = at[faces->corners[faces->offset[first]].vertex];
+    double volume = 0;
+    for (int32_t f = first; f < complex->cell_face[cell + 1]; f++) {
+        double area[3], height = 0;
+        enf_loop_area(faces->corners + faces->offset[f], faces->offset[f + 1] - faces->offset[f], at, area);
+        const double *corner = at[faces->corners[faces->offset[f]].vertex];
+        for (int k = 0; k < 3; k++) height += area[k] * (corner[k] - origin[k]);
+        volume += complex->face_side[f] == 0 ? height : -height;
+    }
+    return volume / 3;
+}
+
+void enf_complex_piece_area(const enf_complex *complex, int32_t piece, double area[3]) {
+    const enf_loops *pieces = &complex->pieces;
+    enf_loop_area(pieces->corners + pieces->offset[piece], pieces->offset[piece + 1] - pieces->offset[piece],
+                  (const double(*)[3])complex->vertex_position, area);
+}
+
+void enf_complex_loop_centre(const enf_complex *complex, const enf_loops *loops, int32_t loop,
+                             double centre[3]) {
+    double count = (double)(loops->offset[loop + 1] - loops->offset[loop]);
+    centre[0] = centre[1] = centre[2] = 0;
+    for (int64_t i = loops->offset[loop]; i < loops->offset[loop + 1]; i++) {
+        for (int k = 0; k < 3; k++)
+            centre[k] += complex->vertex_position[loops->corners[i].vertex][k] / count;
+    }
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The fine complex: convex fine cells, the facets between them and the pieces of those facets, all exact.
+//
+// Everything is defined by planes, and every plane by three points with whole-number coordinates (grid
+// steps), so that every question about the complex has an exact answer (base/exact.h):
+//
+//   point   grid coordinates of a clean vertex
+//   plane   three points, or two points and an axis it is parallel to (the plane through a polygon's edge)
+//   vertex  a point, or the crossing of three planes
+//   loop    a convex polygon on a plane: corners (vertex, plane of the edge that leaves it),
+//   counter-clockwise
+//           seen from the plane's front (positive) side
+//   facet   a flat convex area that separates fine cells: a tetrahedron's face, or the cut made by an input
+//   polygon face    a fine cell's share of a facet (one loop);  faces of one facet's two sides need not match
+//   piece   the overlap of a back face and a front face of a facet, cut up further into open and occluded
+//   parts cover   the share of an input polygon that lies on a facet
+#ifndef ENF_BUILD_COMPLEX_H
+#define ENF_BUILD_COMPLEX_H
+
+#include "build/clean.h"
+
+typedef struct enf_corner {
+    int32_t vertex;
+    int32_t edge_plane; ///< holds the edge from this corner to the next; never parallel to the loop's plane
+} enf_corner;
+
+/// Loops: an offsets array into a flat corner array.
+typedef struct enf_loops {
+    int32_t count;
+    size_t offset_capacity;
+    int64_t *offset; ///< count + 1
+    enf_corner *corners;
+    size_t corner_count, corner_capacity;
+} enf_loops;
+
+typedef struct enf_complex {
+    int32_t point_count;
+    const double *points; ///< xyz, grid steps; borrowed from the mesh
+
+    int32_t plane_count;
+    size_t plane_capacity;
+    /// Three point numbers; the front side is where they turn counter-clockwise. If [2] is -1 - a (a = 0, 1,
+    /// 2), the plane goes through points [0] and [1], parallel to axis a: as if its third point were [0] plus
+    /// one step along a.
+    int32_t (*planes)[3];
+
+    int32_t vertex_count; ///< the first point_count vertices are the points
+    size_t vertex_capacity;
+    int32_t (*vertex_planes)[3];  ///< vertex_count entries; -1 -1 -1 for points
+    double (*vertex_position)[3]; ///< grid steps; rounded for crossings
+
+    // Tetrahedra and, where one was cut, a tree of cuts: the exact way to find a point's cell.
+    int32_t tetrahedron_count;
+    int32_t (*tetrahedra)[4];  ///< point numbers, positively oriented
+    int32_t *tetrahedron_root; ///< >= 0: a node; < 0: the fine cell -1 - root
+    int32_t node_count;
+    size_t node_capacity;
+    int32_t *node_plane;
+    int32_t (*node_child)[2]; ///< behind, in front of the plane; >= 0 node, < 0 fine cell -1 - child
+    int32_t *node_facet;      ///< the facet that the cut made
+
+    int32_t cell_count;
+    size_t cell_capacity;
+    int32_t *cell_tetrahedron;
+    int32_t *cell_face; ///< cell_count + 1 offsets: cell c has faces cell_face[c] .. cell_face[c+1]-1
+
+    // Faces. face_side 0: the cell lies behind the facet's plane; 1: in front of it.
+    enf_loops faces;
+    int32_t *face_facet;
+    uint8_t *face_side;
+    size_t face_capacity;
+
+    int32_t facet_count;
+    size_t facet_capacity;
+    int32_t *facet_plane;
+    bool *facet_hull;     ///< on the convex hull: one side only
+    int32_t *facet_cover; ///< facet_count + 1 offsets into covers
+    int32_t *facet_piece; ///< facet_count + 1 offsets into pieces
+
+    enf_loops covers;
+    int32_t *cover_polygon; ///< mesh polygon; facing: see enf_complex_cover_front
+    uint8_t *cover_side;    ///< the side of the facet that sees the polygon's front: 0 behind, 1 in front
+
+    enf_loops pieces;
+    int32_t (*piece_face)[2]; ///< the face behind, the face in front; -1: outside the hull
+    int32_t *piece_cover;     ///< -1: open; else a cover that the whole piece lies in
+    size_t piece_capacity;
+
+    int64_t *seen_offset; ///< cell_count + 1 offsets
+    int32_t *seen;        ///< mesh polygons whose front a fine cell sees, ascending
+
+    // Work done and work skipped, for the report.
+    int32_t tetrahedra_cut; ///< tetrahedra that some polygon crosses; the others are one fine cell each
+    uint64_t predicates_filter, predicates_exact; ///< decided in floating point / by exact arithmetic
+} enf_complex;
+
+void enf_complex_free(enf_complex *complex);
+
+/// The cell of every face (face_count entries; free() it), or null without memory.
+int32_t *enf_complex_face_cells(const enf_complex *complex);
+
+/// Volume in grid steps cubed, from rounded coordinates.
+double enf_complex_cell_volume(const enf_complex *complex, int32_t cell);
+
+/// Area vector of a piece, grid steps squared, pointing to the facet's front.
+void enf_complex_piece_area(const enf_complex *complex, int32_t piece, double area[3]);
+
+/// The mean of a loop's corners: a point inside it, up to rounding.
+void enf_complex_loop_centre(const enf_complex *complex, const enf_loops *loops, int32_t loop,
+                             double centre[3]);
+
+#endif

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Decimate: collapse the lightest portal again and again, until the stop rule says so.
+#include "build/decimate.h"
+
+#include "base/array.h"
+#include "build/portal_heap.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// Collapses between two calls of `progress`.
+#define PROGRESS_STEP 1000
+
+static const char *const heuristic_names[ENF_HEURISTIC_COUNT] = {"aspect", "aspect-scaled"};
+
+int enf_heuristic_find(const char *name) {
+    for (int i = 0; i < ENF_HEURISTIC_COUNT; ++i)
+        if (strcmp(name, heuristic_names[i]) == 0) return i;
+    return -1;
+}
+
+const char *enf_heuristic_name(enf_heuristic heuristic) {
+    return (int)heuristic >= 0 && heuristic < ENF_HEURISTIC_COUNT ? heuristic_names[heuristic] : "?";
+}
+
+enf_status enf_stop_parse(const char *text, enf_stop *stop, enf_error *error) {
+    *stop = (enf_stop){.rule = ENF_STOP_AUTO};
+    if (strcmp(text, "auto") == 0) return ENF_OK;
+    char *end = NULL;
+    errno = 0;
+    if (strncmp(text, "weight=", 7) == 0) {
+        stop->rule = ENF_STOP_WEIGHT;
+        stop->weight = strtod(text + 7, &end);
+        if (end != text + 7 && *end == 0 && stop->weight >= 0) return ENF_OK;
+        return enf_fail(error, ENF_BAD_USAGE, "stop rule '%s': the weight must be a number, 0 or more", text);
+    }
+    if (strncmp(text, "cells=", 6) == 0) {
+        stop->rule = ENF_STOP_CELLS;
+        stop->cells = strtoll(text + 6, &end, 10);
+        if (end != text + 6 && *end == 0 && errno == 0 && stop->cells >= 1) return ENF_OK;
+        return enf_fail(error, ENF_BAD_USAGE, "stop rule '%s': the number of cells must be a whole number, 1 or more",
+                        text);
+    }
+    return enf_fail(error, ENF_BAD_USAGE, "unknown stop rule '%s'; use auto, weight=W or cells=N", text);
+}
+
+void enf_decimation_free(enf_decimation *decimation) {
+    free(decimation->cell_of);
+    free(decimation->collapses);
+    *decimation = (enf_decimation){0};
+}
+
+/// The cells of the graph as sets: each points to a smaller one of its set, the smallest to itself.
+static int32_t find_smallest(int32_t *smaller, int32_t cell) {
+    while (smaller[cell] != cell) {
+        smaller[cell] = smaller[smaller[cell]];
+        cell = smaller[cell];
+    }
+    return cell;
+}
+
+/// Fills cell_of by doing the collapses again on numbers alone.
+static void number_cells(enf_decimation *out, int32_t graph_cells) {
+    int32_t *cell_of = out->cell_of;
+    for (int32_t cell = 0; cell < graph_cells; ++cell) cell_of[cell] = cell;
+    for (size_t i = 0; i < out->collapse_count; ++i) {
+        int32_t kept = find_smallest(cell_of, out->collapses[i].kept);
+        int32_t gone = find_smallest(cell_of, out->collapses[i].gone);
+        cell_of[kept < gone ? gone : kept] = kept < gone ? kept : gone;
+    }
+    for (int32_t cell = 0; cell < graph_cells; ++cell) cell_of[cell] = find_smallest(cell_of, cell);
+    out->cell_count = 0;
+    for (int32_t cell = 0; cell < graph_cells; ++cell)
+        cell_of[cell] = cell_of[cell] == cell ? out->cell_count++ : cell_of[cell_of[cell]];
+}
+
+static bool is_done(const enf_stop *stop, int64_t cells, double weight) {
+    switch (stop->rule) {
+    case ENF_STOP_WEIGHT: return weight >= stop->weight;
+    case ENF_STOP_CELLS: return cells <= stop->cells;
+    case ENF_STOP_AUTO: break;
+    }
+    return false;
+}
+
+/// The automatic stop: how many of the collapses to do.
+static size_t choose_cut(const enf_collapse *collapses, size_t count) {
+    (void)collapses;
+    return count;
+}
+
+typedef struct task {
+    enf_portal_heap portals;
+    const enf_graph *graph;
+    const enf_stop *stop;
+    double scale; ///< weights in graph units times this are those in world units
+    bool (*progress)(void *user, double fraction);
+    void *user;
+} task;
+
+static enf_status collapse_all(task *task, enf_decimation *out, enf_error *error) {
+    int64_t cells = task->graph->cell_count;
+    for (;;) {
+        int32_t portal;
+        enf_status status = enf_portal_heap_top(&task->portals, &portal, &out->next_weight, error);
+        if (status != ENF_OK || portal < 0) return status;
+        out->next_weight *= task->scale;
+        if (is_done(task->stop, cells, out->next_weight)) return ENF_OK;
+        enf_collapse *collapse = &out->collapses[out->collapse_count++];
+        collapse->weight = out->next_weight;
+        enf_portal_heap_collapse(&task->portals, portal, &collapse->kept, &collapse->gone);
+        --cells;
+        if (task->progress && out->collapse_count % PROGRESS_STEP == 0 &&
+            !task->progress(task->user, (double)out->collapse_count / (double)task->graph->cell_count))
+            return enf_fail(error, ENF_NO_RESOURCES, "decimate: cancelled");
+    }
+}
+
+enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop, double unit,
+                              bool (*progress)(void *user, double fraction), void *user, enf_decimation *out,
+                              enf_error *error) {
+    *out = (enf_decimation){0};
+    if ((int)heuristic < 0 || heuristic >= ENF_HEURISTIC_COUNT || !(unit > 0))
+        return enf_fail(error, ENF_BAD_USAGE, "decimate: heuristic %d, unit %g", (int)heuristic, unit);
+    task task = {.graph = graph,
+                 .stop = stop,
+                 .scale = heuristic == ENF_HEURISTIC_ASPECT_SCALED ? 1 / unit : 1,
+                 .progress = progress,
+                 .user = user};
+    enf_status status = enf_portal_heap_create(&task.portals, graph, heuristic, error);
+    if (status != ENF_OK) return status;
+    out->cell_of = enf_array_new((size_t)graph->cell_count, sizeof *out->cell_of);
+    out->collapses = enf_array_new((size_t)graph->cell_count, sizeof *out->collapses);
+    if (out->cell_of && out->collapses)
+        status = collapse_all(&task, out, error);
+    else
+        status = enf_fail_memory(error, "the list of collapses");
+    out->evaluations = task.portals.evaluations;
+    enf_portal_heap_free(&task.portals);
+    if (status != ENF_OK) {
+        enf_decimation_free(out);
+        return status;
+    }
+    if (stop->rule == ENF_STOP_AUTO) {
+        size_t cut = choose_cut(out->collapses, out->collapse_count);
+        if (cut < out->collapse_count) out->next_weight = out->collapses[cut].weight;
+        out->collapse_count = cut;
+    }
+    number_cells(out, graph->cell_count);
+    return ENF_OK;
+}

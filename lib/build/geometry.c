@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plane-based exact geometry: K. Sugihara and M. Iri, "A solid modelling system free from topological
+// inconsistency" (1989); G. Bernstein and D. Fussell, "Fast, exact, linear booleans" (2009). The filters
+// carry first-order error bounds; U is half a unit in the last place of 1, and the factors leave room for the
+// rounding of the bounds themselves.
+#include "build/geometry.h"
+
+#include "base/array.h"
+#include "base/exact.h"
+#include "base/wide.h"
+
+#include <math.h>
+
+#define U 0x1p-53
+
+static double largest(const double v[3]) {
+    double x = fabs(v[0]), y = fabs(v[1]), z = fabs(v[2]);
+    return x > y ? (x > z ? x : z) : (y > z ? y : z);
+}
+
+static int axis_of(int32_t code) {
+    return -1 - code;
+}
+
+/// The vectors from the plane's first point to its other two.
+static void plane_spans(const enf_geometry *geometry, int32_t plane, double u[3], double v[3]) {
+    const int32_t *defined = geometry->planes[plane];
+    const double *p = geometry->points + 3 * (size_t)defined[0],
+                 *q = geometry->points + 3 * (size_t)defined[1];
+    for (int i = 0; i < 3; i++) u[i] = q[i] - p[i];
+    if (defined[2] < 0) {
+        for (int i = 0; i < 3; i++) v[i] = i == axis_of(defined[2]);
+    } else {
+        const double *r = geometry->points + 3 * (size_t)defined[2];
+        for (int i = 0; i < 3; i++) v[i] = r[i] - p[i];
+    }
+}
+
+/// The axis that the plane is square to, or -1.
+static int square_axis(const double u[3], const double v[3]) {
+    for (int i = 0; i < 3; i++) {
+        if (u[i] == 0 && v[i] == 0) return i;
+    }
+    return -1;
+}
+
+/// Planes square to an axis get the normal +1 or -1: exact, and small enough to keep crossings exact as well.
+static void set_square_plane(enf_plane_filter *filter, const double *p, int axis, const double u[3],
+                             const double v[3]) {
+    int j = (axis + 1) % 3, k = (axis + 2) % 3;
+    enf_int128 area = (enf_int128)u[j] * (enf_int128)v[k] - (enf_int128)u[k] * (enf_int128)v[j];
+    double sign = area > 0 ? 1 : -1;
+    for (int i = 0; i < 3; i++) filter->normal[i] = i == axis ? sign : 0;
+    filter->offset = -sign * p[axis];
+    filter->normal_size = filter->normal_unit = 1;
+    filter->offset_unit = enf_points_unit(&p, 1);
+    filter->normal_error = filter->offset_error = 0;
+}
+
+void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane) {
+    enf_plane_filter *filter = &geometry->filters[plane];
+    const int32_t *defined = geometry->planes[plane];
+    const double *p = geometry->points + 3 * (size_t)defined[0];
+    double u[3], v[3], bound = 0;
+    plane_spans(geometry, plane, u, v);
+    int axis = square_axis(u, v);
+    if (axis >= 0) {
+        set_square_plane(filter, p, axis, u, v);
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double one = u[j] * v[k], two = u[k] * v[j];
+        filter->normal[i] = one - two;
+        bound = fmax(bound, fabs(one) + fabs(two));
+    }
+    filter->normal_size = largest(filter->normal);
+    filter->normal_error = 5 * U * bound;
+    double sum = 0, magnitude = 0, reach = 0;
+    for (int i = 0; i < 3; i++) {
+        sum += filter->normal[i] * p[i];
+        magnitude += fabs(filter->normal[i] * p[i]);
+        reach += fabs(p[i]);
+    }
+    filter->offset = -sum;
+    filter->offset_error = 5 * U * magnitude + 1.001 * filter->normal_error * reach;
+
+    const double *corners[3] = {p, geometry->points + 3 * (size_t)defined[1],
+                                geometry->points + 3 * (size_t)(defined[2] < 0 ? defined[1] : defined[2])};
+    double unit = enf_points_unit(corners, 3);
+    filter->normal_unit = defined[2] < 0 ? unit : unit * unit;
+    filter->offset_unit = filter->normal_unit * unit;
+    if (bound < 0x1p53 * filter->normal_unit) filter->normal_error = 0;
+    if (filter->normal_error == 0 && magnitude < 0x1p53 * filter->offset_unit) filter->offset_error = 0;
+}
+
+// ---------------------------------------------------------------------------------------------- exact tier
+
+typedef struct exact_plane {
+    enf_wide normal[3], offset;
+} exact_plane;
+
+static void exact_plane_of(const enf_geometry *geometry, int32_t plane, exact_plane *out) {
+    const int32_t *defined = geometry->planes[plane];
+    const double *p = geometry->points + 3 * (size_t)defined[0],
+                 *q = geometry->points + 3 * (size_t)defined[1];
+    int64_t u[3], v[3];
+    for (int i = 0; i < 3; i++) {
+        u[i] = (int64_t)q[i] - (int64_t)p[i];
+        v[i] = defined[2] < 0 ? i == axis_of(defined[2])
+                              : (int64_t)geometry->points[3 * (size_t)defined[2] + (size_t)i] - (int64_t)p[i];
+    }
+    out->offset.sign = out->offset.size = 0;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        enf_wide coordinate;
+        enf_wide_set(&out->normal[i], (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j]);
+        enf_wide_set(&coordinate, (int64_t)p[i]);
+        enf_wide_subtract_product(&out->offset, &out->normal[i], &coordinate);
+    }
+}
+
+static const enf_wide *component(const exact_plane *plane, int i) {
+    return i < 3 ? &plane->normal[i] : &plane->offset;
+}
+
+static void minor(enf_wide *out, const exact_plane *a, const exact_plane *b, int i, int j) {
+    enf_wide_multiply(out, component(a, i), component(b, j));
+    enf_wide_subtract_product(out, component(a, j), component(b, i));
+}
+
+/// The normals' determinant.
+static void weight_of(enf_wide *out, const exact_plane plane[3]) {
+    enf_wide part;
+    out->sign = out->size = 0;
+    for (int i = 0; i < 3; i++) {
+        minor(&part, &plane[1], &plane[2], (i + 1) % 3, (i + 2) % 3);
+        enf_wide_add_product(out, &plane[0].normal[i], &part);
+    }
+}
+
+/// Minus component i of (offset_a * b x c + offset_b * c x a + offset_c * a x b).
+static void numerator_of(enf_wide *out, const exact_plane plane[3], int i) {
+    out->sign = out->size = 0;
+    for (int k = 0; k < 3; k++) {
+        enf_wide part;
+        minor(&part, &plane[(k + 1) % 3], &plane[(k + 2) % 3], (i + 1) % 3, (i + 2) % 3);
+        enf_wide_subtract_product(out, &plane[k].offset, &part);
+    }
+}
+
+/// Sign of the determinant of four planes' coefficients, by Laplace's expansion in 2x2 minors.
+static int determinant_sign(const exact_plane *a, const exact_plane *b, const exact_plane *c,
+                            const exact_plane *d) {
+    static const int pair[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
+                                   {1, 2, 0, 3}, {3, 1, 0, 2}, {2, 3, 0, 1}};
+    enf_wide sum = {0}, above, below;
+    for (int i = 0; i < 6; i++) {
+        minor(&above, a, b, pair[i][0], pair[i][1]);
+        if (above.sign == 0) continue;
+        minor(&below, c, d, pair[i][2], pair[i][3]);
+        enf_wide_add_product(&sum, &above, &below);
+    }
+    return sum.sign;
+}
+
+// ---------------------------------------------------------------------------------------------- crossings
+
+static void cross(double out[3], const double a[3], const double b[3]) {
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        out[i] = a[j] * b[k] - a[k] * b[j];
+    }
+}
+
+/// Homogeneous coordinates with error bounds: every coordinate is a sum of six products of three
+/// coefficients.
+static void approximate(const enf_geometry *geometry, enf_crossing *crossing) {
+    const enf_plane_filter *f[3];
+    double size[3], error[3], reach[3], off[3];
+    for (int k = 0; k < 3; k++) {
+        f[k] = &geometry->filters[crossing->plane[k]];
+        size[k] = f[k]->normal_size + f[k]->normal_error;
+        error[k] = f[k]->normal_error;
+        reach[k] = fabs(f[k]->offset) + f[k]->offset_error;
+        off[k] = f[k]->offset_error;
+    }
+    double at[3] = {0, 0, 0}, at_error = 0, at_magnitude = 0, at_unit = HUGE_VAL, product[3];
+    for (int k = 0; k < 3; k++) {
+        int l = (k + 1) % 3, m = (k + 2) % 3;
+        cross(product, f[l]->normal, f[m]->normal);
+        for (int i = 0; i < 3; i++) at[i] -= f[k]->offset * product[i];
+        if (k == 0) {
+            crossing->weight =
+                f[0]->normal[0] * product[0] + f[0]->normal[1] * product[1] + f[0]->normal[2] * product[2];
+        }
+        at_error += 2 * (off[k] * size[l] * size[m] + reach[k] * (error[l] * size[m] + size[l] * error[m])) +
+                    2 * 8 * U * reach[k] * size[l] * size[m];
+        at_magnitude += 2 * reach[k] * size[l] * size[m];
+        at_unit = fmin(at_unit, f[k]->offset_unit * f[l]->normal_unit * f[m]->normal_unit);
+    }
+    for (int i = 0; i < 3; i++) crossing->at[i] = at[i];
+    crossing->at_error = 1.01 * at_error;
+    crossing->weight_error = 6.06 * (error[0] * size[1] * size[2] + size[0] * error[1] * size[2] +
+                                     size[0] * size[1] * error[2] + 8 * U * size[0] * size[1] * size[2]);
+    crossing->at_unit = at_unit;
+    crossing->weight_unit = f[0]->normal_unit * f[1]->normal_unit * f[2]->normal_unit;
+    bool exact_normals = error[0] == 0 && error[1] == 0 && error[2] == 0;
+    if (exact_normals && 6 * size[0] * size[1] * size[2] < 0x1p53 * crossing->weight_unit) {
+        crossing->weight_error = 0;
+    }
+    if (exact_normals && off[0] == 0 && off[1] == 0 && off[2] == 0 && at_magnitude < 0x1p53 * at_unit) {
+        crossing->at_error = 0;
+    }
+}
+
+int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t c) {
+    if (!enf_array_reserve(geometry->crossings, geometry->crossing_capacity,
+                           (size_t)geometry->crossing_count + 1)) {
+        return -1;
+    }
+    enf_crossing *crossing = &geometry->crossings[geometry->crossing_count];
+    crossing->plane[0] = a;
+    crossing->plane[1] = b;
+    crossing->plane[2] = c;
+    approximate(geometry, crossing);
+    if (fabs(crossing->weight) > crossing->weight_error) {
+        crossing->weight_sign = crossing->weight > 0 ? 1 : -1;
+    } else {
+        exact_plane plane[3];
+        enf_wide weight;
+        for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &plane[k]);
+        weight_of(&weight, plane);
+        crossing->weight_sign = weight.sign;
+    }
+    return geometry->point_count + geometry->shared_count + geometry->crossing_count++;
+}
+
+// ---------------------------------------------------------------------------------------------- the
+// predicate
+
+static int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane) {
+    const int32_t *defined = geometry->planes[plane];
+    if (point == defined[0] || point == defined[1] || point == defined[2]) return 0;
+    const enf_plane_filter *filter = &geometry->filters[plane];
+    const double *x = geometry->points + 3 * (size_t)point, *p = geometry->points + 3 * (size_t)defined[0];
+    double value = 0, magnitude = 0, reach = 0;
+    for (int i = 0; i < 3; i++) {
+        double difference = x[i] - p[i];
+        value += filter->normal[i] * difference;
+        magnitude += fabs(filter->normal[i] * difference);
+        reach += fabs(difference);
+    }
+    if (fabs(value) > 6 * U * magnitude + 1.001 * filter->normal_error * reach) {
+        geometry->decided_by_filter++;
+        return value > 0 ? 1 : -1;
+    }
+    double unit = filter->normal_unit * enf_points_unit((const double *const[]){x, p}, 2);
+    if (filter->normal_error == 0 && magnitude < 0x1p53 * unit) { // nothing was rounded: 0 is 0
+        geometry->decided_by_filter++;
+        return value > 0 ? 1 : value < 0 ? -1 : 0;
+    }
+    geometry->decided_exactly++;
+    double third[3];
+    const double *q = geometry->points + 3 * (size_t)defined[1], *r = q;
+    if (defined[2] >= 0) {
+        r = geometry->points + 3 * (size_t)defined[2];
+    } else {
+        int axis = axis_of(defined[2]), step = p[axis] > 0 ? -1 : 1; // one step beyond 2^53 is no double
+        for (int i = 0; i < 3; i++) third[i] = i == axis ? p[i] + step : p[i];
+        return step * enf_points_orient(p, q, third, x);
+    }
+    return enf_points_orient(p, q, r, x);
+}
+
+const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t vertex) {
+    int32_t i = vertex - geometry->point_count;
+    return i < geometry->shared_count ? &geometry->shared[i]
+                                      : &geometry->crossings[i - geometry->shared_count];
+}
+
+static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
+    if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
+    const enf_plane_filter *filter = &geometry->filters[plane];
+    double value = filter->offset * crossing->weight, magnitude = fabs(value), reach = 0;
+    for (int i = 0; i < 3; i++) {
+        double term = filter->normal[i] * crossing->at[i];
+        value += term;
+        magnitude += fabs(term);
+        reach += fabs(crossing->at[i]);
+    }
+    double error = 6 * U * magnitude + filter->normal_error * (reach + 3 * crossing->at_error) +
+                   3 * filter->normal_size * crossing->at_error +
+                   filter->offset_error * (fabs(crossing->weight) + crossing->weight_error) +
+                   fabs(filter->offset) * crossing->weight_error;
+    if (fabs(value) > 1.01 * error) {
+        geometry->decided_by_filter++;
+        return value > 0 ? crossing->weight_sign : -crossing->weight_sign;
+    }
+    if (error == 6 * U * magnitude &&
+        magnitude < 0x1p53 * fmin(filter->normal_unit * crossing->at_unit,
+                                  filter->offset_unit * crossing->weight_unit)) {
+        geometry->decided_by_filter++; // nothing was rounded: 0 is 0
+        return value > 0 ? crossing->weight_sign : value < 0 ? -crossing->weight_sign : 0;
+    }
+    geometry->decided_exactly++;
+    exact_plane exact[4];
+    for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &exact[k]);
+    exact_plane_of(geometry, plane, &exact[3]);
+    // The determinant is the weight times the fourth plane's value at the crossing.
+    return determinant_sign(&exact[0], &exact[1], &exact[2], &exact[3]) * crossing->weight_sign;
+}
+
+int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane) {
+    if (vertex < geometry->point_count) return side_of_point(geometry, vertex, plane);
+    return side_of_crossing(geometry, enf_geometry_crossing(geometry, vertex), plane);
+}
+
+uint64_t enf_geometry_plane_bucket(const enf_geometry *geometry, int32_t plane) {
+    const enf_plane_filter *filter = &geometry->filters[plane];
+    double length = sqrt(filter->normal[0] * filter->normal[0] + filter->normal[1] * filter->normal[1] +
+                         filter->normal[2] * filter->normal[2]);
+    double part[4] = {filter->normal[0] / length, filter->normal[1] / length, filter->normal[2] / length,
+                      filter->offset / length * 0x1p-53};
+    double sign = 1;
+    for (int i = 0; i < 3; i++) {
+        if (fabs(part[i]) < 0x1p-20) continue;
+        sign = part[i] < 0 ? -1 : 1;
+        break;
+    }
+    uint64_t hash = 0;
+    for (int i = 0; i < 4; i++) {
+        hash = (hash ^ (uint64_t)llround(sign * part[i] * 0x1p20)) * UINT64_C(0x9E3779B97F4A7C15);
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+int enf_geometry_dominant_axis(const enf_geometry *geometry, const int32_t points[3], int *sign) {
+    const double *at = geometry->points;
+    int64_t u[3], v[3];
+    for (int i = 0; i < 3; i++) {
+        int64_t origin = (int64_t)at[3 * (size_t)points[0] + (size_t)i];
+        u[i] = (int64_t)at[3 * (size_t)points[1] + (size_t)i] - origin;
+        v[i] = (int64_t)at[3 * (size_t)points[2] + (size_t)i] - origin;
+    }
+    int axis = 0;
+    enf_int128 best = -1;
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        enf_int128 component = (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j];
+        enf_int128 size = component < 0 ? -component : component;
+        if (size <= best) continue;
+        best = size;
+        axis = i;
+        *sign = component < 0 ? -1 : 1;
+    }
+    return axis;
+}
+
+bool enf_geometry_same_way(const enf_geometry *geometry, int32_t a, int32_t b) {
+    // Parallel normals are longest along the same axis (of equals, the first is taken in both).
+    int sign_a, sign_b;
+    enf_geometry_dominant_axis(geometry, geometry->planes[a], &sign_a);
+    enf_geometry_dominant_axis(geometry, geometry->planes[b], &sign_b);
+    return sign_a == sign_b;
+}
+
+void enf_geometry_position(const enf_geometry *geometry, int32_t vertex, double position[3]) {
+    if (vertex < geometry->point_count) {
+        for (int i = 0; i < 3; i++) position[i] = geometry->points[3 * (size_t)vertex + (size_t)i];
+        return;
+    }
+    const enf_crossing *crossing = enf_geometry_crossing(geometry, vertex);
+    // A quarter of a grid step is as good as the points themselves.
+    if (crossing->at_error + 0x1p53 * crossing->weight_error < 0.25 * fabs(crossing->weight)) {
+        for (int i = 0; i < 3; i++) position[i] = crossing->at[i] / crossing->weight;
+        return;
+    }
+    exact_plane plane[3];
+    enf_wide weight, numerator;
+    for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &plane[k]);
+    weight_of(&weight, plane);
+    for (int i = 0; i < 3; i++) {
+        numerator_of(&numerator, plane, i);
+        position[i] = enf_wide_quotient(&numerator, &weight);
+    }
+}

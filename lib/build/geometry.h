@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Planes, crossings and the one predicate that everything exact stands on: on which side of a plane is a
+// vertex?
+//
+// Coordinates are whole numbers, |x| <= 2^53. With differences of 54 bits, a plane's normal has 109 bits and
+// its offset 164; the determinant of four planes stays below 2^497, so 512 bits decide every case
+// (base/wide.h).
+#ifndef ENF_BUILD_GEOMETRY_H
+#define ENF_BUILD_GEOMETRY_H
+
+#include "enfilade/base.h"
+
+/// A plane as the floating-point filter sees it: normal . x + offset, with bounds on the coefficients'
+/// errors.
+typedef struct enf_plane_filter {
+    double normal[3], offset;
+    double normal_size;              ///< largest |component|
+    double normal_error;             ///< bound on each component's error; 0: exact
+    double offset_error;             ///< the same for the offset
+    double normal_unit, offset_unit; ///< powers of two that divide the true coefficients
+} enf_plane_filter;
+
+/// A crossing of three planes in homogeneous coordinates, with error bounds.
+typedef struct enf_crossing {
+    int32_t plane[3];
+    int32_t weight_sign;           ///< exact sign of the weight
+    double at[3], weight;          ///< the point is at / weight
+    double at_error, weight_error; ///< 0: exact
+    double at_unit, weight_unit;   ///< powers of two that divide the true values
+} enf_crossing;
+
+/// Vertices are numbered: points, then the shared crossings, then the geometry's own crossings. Points,
+/// planes and shared crossings are fixed while own ones are made, so each thread can have a geometry that
+/// shares the former.
+typedef struct enf_geometry {
+    int32_t point_count;
+    const double *points;      ///< xyz
+    int32_t (*planes)[3];      ///< as in enf_complex
+    enf_plane_filter *filters; ///< one per plane
+    int32_t plane_count;
+
+    const enf_crossing *shared; ///< vertex point_count + i; may be null
+    int32_t shared_count;
+    enf_crossing *crossings; ///< vertex point_count + shared_count + i
+    int32_t crossing_count;
+    size_t crossing_capacity;
+
+    uint64_t decided_by_filter, decided_exactly;
+} enf_geometry;
+
+/// Fills filters[plane] from planes[plane].
+void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane);
+
+/// The vertex where three planes cross in one point (they must). -1 without memory.
+int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t c);
+
+/// A vertex that is not a point. The pointer holds until the next crossing is made.
+const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t vertex);
+
+/// +1: the vertex is in front of the plane, -1: behind, 0: on it. Exact.
+int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane);
+
+/// A hash that is the same for planes that are (up to rounding, with rare exceptions) the same, whichever way
+/// they face: a first sieve before the exact test.
+uint64_t enf_geometry_plane_bucket(const enf_geometry *geometry, int32_t plane);
+
+/// The axis along which a normal is longest; *sign is the normal's there (+1 or -1). Exact. For planes of
+/// three points.
+int enf_geometry_dominant_axis(const enf_geometry *geometry, const int32_t points[3], int *sign);
+
+/// Do two planes of three points that are parallel face the same way? Exact.
+bool enf_geometry_same_way(const enf_geometry *geometry, int32_t a, int32_t b);
+
+/// The vertex's coordinates: exact for points, rounded (a few units in the last place of the world's size)
+/// for crossings.
+void enf_geometry_position(const enf_geometry *geometry, int32_t vertex, double position[3]);
+
+#endif

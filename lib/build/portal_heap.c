@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The portals between the cells while they merge, and which of them is the lightest.
+#include "build/portal_heap.h"
+
+#include "base/array.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+void enf_portal_heap_free(enf_portal_heap *portals) {
+    enf_surface_free(&portals->surface);
+    enf_pair_table_free(&portals->table);
+    enf_heap_free(&portals->heap);
+    free(portals->portals);
+    free(portals->piece_next);
+    free(portals->first_portal);
+    free(portals->degree);
+    free(portals->smallest);
+    free(portals->age);
+    *portals = (enf_portal_heap){0};
+}
+
+static int side_of(const enf_portal *portal, int32_t cell) { return portal->cell[1] == cell; }
+
+static void link_portal(enf_portal_heap *portals, int32_t number, int side) {
+    enf_portal *portal = &portals->portals[number];
+    int32_t cell = portal->cell[side], first = portals->first_portal[cell];
+    portal->previous[side] = -1;
+    portal->next[side] = first;
+    if (first >= 0) portals->portals[first].previous[side_of(&portals->portals[first], cell)] = number;
+    portals->first_portal[cell] = number;
+    ++portals->degree[cell];
+}
+
+static void unlink_portal(enf_portal_heap *portals, int32_t number, int side) {
+    enf_portal *portal = &portals->portals[number];
+    int32_t cell = portal->cell[side], next = portal->next[side], previous = portal->previous[side];
+    if (previous < 0)
+        portals->first_portal[cell] = next;
+    else
+        portals->portals[previous].next[side_of(&portals->portals[previous], cell)] = next;
+    if (next >= 0) portals->portals[next].previous[side_of(&portals->portals[next], cell)] = previous;
+    --portals->degree[cell];
+}
+
+/// The unit normal of the portal's plane, its first component that is not 0 positive.
+static void normal_of(const enf_portal_heap *portals, const enf_portal *portal, double normal[3]) {
+    const double *sum = portal->sum;
+    double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    if (!(length > portal->area * ENF_CLOSED_PORTAL_RATIO)) {
+        sum = portals->surface.sides[2 * (size_t)portal->largest_piece].outward;
+        length = portals->surface.piece_area[portal->largest_piece];
+    }
+    if (!(length > 0)) {
+        normal[0] = normal[1] = 0;
+        normal[2] = 1;
+        return;
+    }
+    double sign = sum[0] != 0 ? sum[0] : sum[1] != 0 ? sum[1] : sum[2];
+    if (sign < 0) length = -length;
+    for (int k = 0; k < 3; ++k) normal[k] = sum[k] / length;
+}
+
+static double round_weight(double weight) {
+    if (!(weight >= 0 && weight < INFINITY)) return INFINITY;
+    int exponent;
+    double fraction = frexp(weight, &exponent);
+    return ldexp(rint(ldexp(fraction, ENF_WEIGHT_BITS)), exponent - ENF_WEIGHT_BITS);
+}
+
+static double weight_of(const enf_portal_heap *portals, const enf_portal *portal, double silhouette) {
+    double size = portals->heuristic == ENF_HEURISTIC_ASPECT_SCALED ? sqrt(silhouette) : silhouette;
+    return portal->area > 0 ? round_weight(size / portal->area) : INFINITY;
+}
+
+static void set_key(enf_portal_heap *portals, int32_t number, double weight) {
+    const enf_portal *portal = &portals->portals[number];
+    int32_t a = portals->smallest[portal->cell[0]], b = portals->smallest[portal->cell[1]];
+    enf_heap_set(&portals->heap, number, (enf_heap_key){weight, a < b ? a : b, a < b ? b : a});
+}
+
+static bool is_fresh(const enf_portal_heap *portals, const enf_portal *portal) {
+    return portal->weighed_at[0] == portals->age[portal->cell[0]] &&
+           portal->weighed_at[1] == portals->age[portal->cell[1]];
+}
+
+/// A lower bound of the weight that costs no look at the surfaces.
+static double bound_weight(const enf_portal_heap *portals, const enf_portal *portal) {
+    double normal[3], silhouette = 0;
+    normal_of(portals, portal, normal);
+    for (int s = 0; s < 2; ++s) {
+        silhouette = fmax(silhouette, portal->silhouette[s]);
+        silhouette = fmax(silhouette, enf_surface_silhouette_bound(&portals->surface, portal->cell[s], normal));
+    }
+    return weight_of(portals, portal, silhouette);
+}
+
+/// Computes the weight: the silhouettes that may have grown, the cell with the larger surface first, the other only as
+/// far as it can be the larger one. Returns false when there is no memory.
+static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) {
+    double normal[3], largest = 0;
+    normal_of(portals, portal, normal);
+    bool known[2];
+    for (int s = 0; s < 2; ++s) {
+        known[s] = portal->silhouette_at[s] == portals->age[portal->cell[s]];
+        if (known[s]) largest = fmax(largest, portal->silhouette[s]);
+    }
+    const enf_body *bodies = portals->surface.bodies;
+    int first = bodies[portal->cell[1]].side_count > bodies[portal->cell[0]].side_count;
+    for (int i = 0; i < 2; ++i) {
+        int s = i ? !first : first;
+        if (known[s]) continue;
+        double area = enf_surface_silhouette(&portals->surface, portal->cell[s], normal, largest);
+        if (area < 0) return false;
+        if (area <= largest) continue;
+        largest = area;
+        portal->silhouette[s] = area;
+        portal->silhouette_at[s] = portals->age[portal->cell[s]];
+    }
+    for (int s = 0; s < 2; ++s) portal->weighed_at[s] = portals->age[portal->cell[s]];
+    ++portals->evaluations;
+    *weight = weight_of(portals, portal, largest);
+    return true;
+}
+
+static bool allocate(enf_portal_heap *portals, size_t cells, size_t pieces, size_t count) {
+    portals->portals = enf_array_zeroed(count, sizeof *portals->portals);
+    portals->piece_next = enf_array_new(pieces, sizeof *portals->piece_next);
+    portals->first_portal = enf_array_new(cells, sizeof *portals->first_portal);
+    portals->degree = enf_array_zeroed(cells, sizeof *portals->degree);
+    portals->smallest = enf_array_new(cells, sizeof *portals->smallest);
+    portals->age = enf_array_new(cells, sizeof *portals->age);
+    if (!portals->portals || !portals->piece_next || !portals->first_portal || !portals->degree ||
+        !portals->smallest || !portals->age || !enf_pair_table_create(&portals->table, count) ||
+        !enf_heap_create(&portals->heap, (int32_t)count))
+        return false;
+    for (size_t cell = 0; cell < cells; ++cell) {
+        portals->first_portal[cell] = -1;
+        portals->smallest[cell] = (int32_t)cell;
+        portals->age[cell] = 1;
+    }
+    return true;
+}
+
+/// Adds the pieces of `other` to a portal; `sign` is -1 when the two run in opposite directions.
+static void join_pieces(enf_portal_heap *portals, enf_portal *portal, const enf_portal *other, double sign) {
+    if (portal->first_piece < 0)
+        portal->first_piece = other->first_piece;
+    else
+        portals->piece_next[portal->last_piece] = other->first_piece;
+    portal->last_piece = other->last_piece;
+    const double *areas = portals->surface.piece_area;
+    int32_t a = portal->largest_piece, b = other->largest_piece;
+    if (a < 0 || areas[b] > areas[a] || (areas[b] == areas[a] && b < a)) portal->largest_piece = b;
+    portal->area += other->area;
+    for (int k = 0; k < 3; ++k) portal->sum[k] += sign * other->sum[k];
+}
+
+/// Pieces of the same two fine cells are neighbours in the canonical order: one portal for each such run.
+static void fill_portals(enf_portal_heap *portals) {
+    const enf_surface *surface = &portals->surface;
+    int32_t number = -1;
+    for (int32_t piece = 0; piece < surface->piece_count; ++piece) {
+        portals->piece_next[piece] = -1;
+        if (!surface->piece_open[piece]) continue;
+        const int32_t *cell = surface->piece_cell[piece];
+        if (number < 0 || portals->portals[number].cell[0] != cell[0] || portals->portals[number].cell[1] != cell[1]) {
+            portals->portals[++number] =
+                (enf_portal){.cell = {cell[0], cell[1]}, .first_piece = -1, .last_piece = -1, .largest_piece = -1};
+            *enf_pair_table_at(&portals->table, cell[0], cell[1]) = number;
+            link_portal(portals, number, 0);
+            link_portal(portals, number, 1);
+        }
+        const double *outward = surface->sides[2 * (size_t)piece].outward;
+        enf_portal added = {.first_piece = piece,
+                            .last_piece = piece,
+                            .largest_piece = piece,
+                            .area = surface->piece_area[piece],
+                            .sum = {outward[0], outward[1], outward[2]}};
+        join_pieces(portals, &portals->portals[number], &added, 1);
+    }
+    portals->portal_count = number + 1;
+}
+
+static int32_t count_portals(const enf_surface *surface) {
+    int32_t count = 0;
+    const int32_t *last = NULL;
+    for (int32_t piece = 0; piece < surface->piece_count; ++piece) {
+        if (!surface->piece_open[piece]) continue;
+        const int32_t *cell = surface->piece_cell[piece];
+        if (!last || last[0] != cell[0] || last[1] != cell[1]) ++count;
+        last = cell;
+    }
+    return count;
+}
+
+enf_status enf_portal_heap_create(enf_portal_heap *portals, const enf_graph *graph, enf_heuristic heuristic,
+                                  enf_error *error) {
+    *portals = (enf_portal_heap){.heuristic = heuristic};
+    enf_status status = enf_surface_create(&portals->surface, graph, error);
+    if (status != ENF_OK) return status;
+    size_t pieces = (size_t)portals->surface.piece_count;
+    bool fine = allocate(portals, (size_t)graph->cell_count, pieces, (size_t)count_portals(&portals->surface));
+    if (fine) fill_portals(portals);
+    for (int32_t number = 0; fine && number < portals->portal_count; ++number) {
+        double weight;
+        fine = weigh(portals, &portals->portals[number], &weight);
+        if (fine) set_key(portals, number, weight);
+    }
+    if (fine) return ENF_OK;
+    enf_portal_heap_free(portals);
+    return enf_fail_memory(error, "the portals between the cells");
+}
+
+enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t *portal, double *weight, enf_error *error) {
+    while ((*portal = enf_heap_top(&portals->heap)) >= 0) {
+        enf_portal *top = &portals->portals[*portal];
+        double key = portals->heap.keys[*portal].weight;
+        *weight = key;
+        if (is_fresh(portals, top)) return ENF_OK;
+        double bound = bound_weight(portals, top);
+        if (bound > key) {
+            set_key(portals, *portal, bound);
+            continue;
+        }
+        if (!weigh(portals, top, weight)) return enf_fail_memory(error, "a silhouette");
+        set_key(portals, *portal, fmax(key, *weight));
+    }
+    *weight = INFINITY;
+    return ENF_OK;
+}
+
+/// The portal of the gone cell becomes one of the kept cell. Its weight can only have grown.
+static void hand_over(enf_portal_heap *portals, int32_t number, int side, int32_t kept) {
+    enf_portal *portal = &portals->portals[number];
+    portal->cell[side] = kept;
+    portal->weighed_at[side] = portal->silhouette_at[side] = 0;
+    *enf_pair_table_at(&portals->table, kept, portal->cell[!side]) = number;
+    link_portal(portals, number, side);
+    set_key(portals, number, portals->heap.keys[number].weight);
+}
+
+static bool same_normal(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/// Two portals to the same cell become one. What is known of the silhouettes stays true if the normal stays.
+static void join_portals(enf_portal_heap *portals, int32_t number, int side, const enf_portal *other, int other_side) {
+    enf_portal *portal = &portals->portals[number];
+    double before[3], before_other[3], normal[3];
+    normal_of(portals, portal, before);
+    normal_of(portals, other, before_other);
+    join_pieces(portals, portal, other, side == other_side ? 1 : -1);
+    normal_of(portals, portal, normal);
+    if (!same_normal(before, normal))
+        for (int s = 0; s < 2; ++s) portal->silhouette[s] = portal->silhouette_at[s] = 0;
+    if (same_normal(before_other, normal)) {
+        portal->silhouette[side] = fmax(portal->silhouette[side], other->silhouette[other_side]);
+        if (portal->silhouette_at[!side] != portals->age[portal->cell[!side]]) {
+            portal->silhouette[!side] = fmax(portal->silhouette[!side], other->silhouette[!other_side]);
+            portal->silhouette_at[!side] = other->silhouette_at[!other_side];
+        }
+    }
+    portal->weighed_at[0] = portal->weighed_at[1] = 0;
+    set_key(portals, number, bound_weight(portals, portal));
+}
+
+/// Gives all portals of the gone cell to the kept one.
+static void move_portals(enf_portal_heap *portals, int32_t kept, int32_t gone) {
+    for (int32_t number = portals->first_portal[gone], next; number >= 0; number = next) {
+        enf_portal *portal = &portals->portals[number];
+        int side = side_of(portal, gone);
+        next = portal->next[side];
+        int32_t beyond = portal->cell[!side];
+        enf_pair_table_remove(&portals->table, gone, beyond);
+        int32_t twin = *enf_pair_table_at(&portals->table, kept, beyond);
+        if (twin < 0) {
+            hand_over(portals, number, side, kept);
+            continue;
+        }
+        unlink_portal(portals, number, !side);
+        enf_heap_remove(&portals->heap, number);
+        join_portals(portals, twin, side_of(&portals->portals[twin], kept), portal, side);
+    }
+    portals->first_portal[gone] = -1;
+    portals->degree[gone] = 0;
+}
+
+/// The kept cell has a smaller number to show: that decides ties.
+static void renumber(enf_portal_heap *portals, int32_t cell, int32_t smallest) {
+    portals->smallest[cell] = smallest;
+    for (int32_t number = portals->first_portal[cell]; number >= 0;) {
+        const enf_portal *portal = &portals->portals[number];
+        set_key(portals, number, portals->heap.keys[number].weight);
+        number = portal->next[side_of(portal, cell)];
+    }
+}
+
+void enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t *kept, int32_t *gone) {
+    enf_portal *portal = &portals->portals[number];
+    int32_t a = portal->cell[0], b = portal->cell[1];
+    int32_t smallest_a = portals->smallest[a], smallest_b = portals->smallest[b];
+    *kept = smallest_a < smallest_b ? smallest_a : smallest_b;
+    *gone = smallest_a < smallest_b ? smallest_b : smallest_a;
+    enf_heap_remove(&portals->heap, number);
+    enf_pair_table_remove(&portals->table, a, b);
+    unlink_portal(portals, number, 0);
+    unlink_portal(portals, number, 1);
+    for (int32_t piece = portal->first_piece; piece >= 0; piece = portals->piece_next[piece])
+        portals->surface.piece_gone[piece] = true;
+    // The cell with more portals keeps its place, so a portal is handed over only log n times.
+    int32_t large = portals->degree[a] >= portals->degree[b] ? a : b, small = large == a ? b : a;
+    if (!enf_surface_is_lid(&portals->surface, small)) ++portals->age[large];
+    enf_surface_merge(&portals->surface, large, small);
+    if (portals->smallest[large] != *kept) renumber(portals, large, *kept);
+    move_portals(portals, large, small);
+}

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rules. A region is
+//   outside  if an open facet of the convex hull belongs to it, and it is inside no solid;
+//   rock     if its winding number is positive (it is inside a closed solid, however solids overlap); or if
+//   it is 0
+//            and the region sees more back than front area, or no front at all (the gap between two rooms
+//            drawn as shells, the inside of a table leg that reaches into the table top);
+//   air      otherwise. A spawn point makes its region air (or outside, with a leak) whatever the polygons
+//   say.
+// --keep auto keeps the regions with spawn points; without any, every air region; if there is none, the
+// outside.
+#include "build/region.h"
+
+#include "base/array.h"
+#include "build/spawn.h"
+#include "build/winding.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void enf_regions_free(enf_regions *regions) {
+    free(regions->cell_region);
+    free(regions->kind);
+    free(regions->kept);
+    free(regions->touches_outside);
+    free(regions->winding);
+    free(regions->ambiguous);
+    free(regions->volume);
+    free(regions->front_area);
+    free(regions->back_area);
+    free(regions->spawn_cell);
+    free(regions->leak_points);
+    memset(regions, 0, sizeof *regions);
+}
+
+// ---------------------------------------------------------------------------------------------- components
+
+static int32_t find(int32_t *parent, int32_t cell) {
+    while (parent[cell] != cell) {
+        parent[cell] = parent[parent[cell]];
+        cell = parent[cell];
+    }
+    return cell;
+}
+
+/// Joins cells through open pieces; the smallest cell stands for a region, so numbering by it is canonical.
+static bool colour_cells(enf_regions *regions, const enf_complex *complex, const int32_t *face_cell) {
+    int32_t cells = complex->cell_count;
+    int32_t *parent = enf_array_new((size_t)cells, sizeof *parent);
+    regions->cell_region = enf_array_new((size_t)cells, sizeof *regions->cell_region);
+    if (!parent || !regions->cell_region) {
+        free(parent);
+        return false;
+    }
+    for (int32_t c = 0; c < cells; c++) parent[c] = c;
+    for (int32_t p = 0; p < complex->pieces.count; p++) {
+        const int32_t *face = complex->piece_face[p];
+        if (complex->piece_cover[p] >= 0 || face[0] < 0 || face[1] < 0) continue;
+        int32_t a = find(parent, face_cell[face[0]]), b = find(parent, face_cell[face[1]]);
+        if (a < b) parent[b] = a;
+        if (b < a) parent[a] = b;
+    }
+    for (int32_t c = 0; c < cells; c++) {
+        int32_t root = find(parent, c);
+        regions->cell_region[c] = root == c ? regions->region_count++ : regions->cell_region[root];
+    }
+    free(parent);
+    return true;
+}
+
+static bool allocate(enf_regions *regions) {
+    size_t count = (size_t)regions->region_count;
+    regions->kind = enf_array_zeroed(count, sizeof *regions->kind);
+    regions->kept = enf_array_zeroed(count, sizeof *regions->kept);
+    regions->touches_outside = enf_array_zeroed(count, sizeof *regions->touches_outside);
+    regions->winding = enf_array_zeroed(count, sizeof *regions->winding);
+    regions->ambiguous = enf_array_zeroed(count, sizeof *regions->ambiguous);
+    regions->volume = enf_array_zeroed(count, sizeof *regions->volume);
+    regions->front_area = enf_array_zeroed(count, sizeof *regions->front_area);
+    regions->back_area = enf_array_zeroed(count, sizeof *regions->back_area);
+    return regions->kind && regions->kept && regions->touches_outside && regions->winding &&
+           regions->ambiguous && regions->volume && regions->front_area && regions->back_area;
+}
+
+/// Volumes, areas of fronts and backs, and whether the hull is open somewhere.
+static void measure(enf_regions *regions, const enf_complex *complex, const int32_t *face_cell) {
+    for (int32_t c = 0; c < complex->cell_count; c++) {
+        regions->volume[regions->cell_region[c]] += enf_complex_cell_volume(complex, c);
+    }
+    for (int32_t p = 0; p < complex->pieces.count; p++) {
+        const int32_t *face = complex->piece_face[p];
+        int32_t cover = complex->piece_cover[p];
+        double area[3];
+        if (cover >= 0) enf_complex_piece_area(complex, p, area);
+        for (int side = 0; side < 2; side++) {
+            if (face[side] < 0) continue;
+            int32_t region = regions->cell_region[face_cell[face[side]]];
+            if (cover < 0) {
+                if (face[1 - side] < 0) regions->touches_outside[region] = true;
+            } else {
+                double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+                *(complex->cover_side[cover] == side ? &regions->front_area[region]
+                                                     : &regions->back_area[region]) += size;
+            }
+        }
+    }
+}
+
+static void judge(enf_regions *regions) {
+    for (int32_t r = 0; r < regions->region_count; r++) {
+        double front = regions->front_area[r], back = regions->back_area[r];
+        bool sees = front > 0 && front >= back;
+        if (regions->touches_outside[r]) {
+            regions->kind[r] = regions->winding[r] > 0 ? ENF_KIND_ROCK : ENF_KIND_OUTSIDE;
+        } else if (regions->winding[r] > 0 || (regions->winding[r] == 0 && !sees)) {
+            regions->kind[r] = ENF_KIND_ROCK;
+        } else {
+            regions->kind[r] = ENF_KIND_AIR;
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------------------- spawns
+
+/// Of the cells around a spawn on a boundary, the one in the best region: air before outside before rock,
+/// then the larger region, then the smaller number.
+static int32_t best_cell(const enf_regions *regions, const enf_cell_list *list) {
+    static const int rank[] = {[ENF_KIND_AIR] = 0, [ENF_KIND_OUTSIDE] = 1, [ENF_KIND_ROCK] = 2};
+    int32_t best = -1;
+    for (size_t i = 0; i < list->count; i++) {
+        int32_t cell = list->cells[i], region = regions->cell_region[cell];
+        if (best < 0) {
+            best = cell;
+            continue;
+        }
+        int32_t other = regions->cell_region[best];
+        int order = rank[regions->kind[region]] - rank[regions->kind[other]];
+        if (order == 0 && regions->volume[region] != regions->volume[other]) {
+            order = regions->volume[region] > regions->volume[other] ? -1 : 1;
+        }
+        if (order < 0 || (order == 0 && cell < best)) best = cell;
+    }
+    return best;
+}
+
+static bool place_spawns(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
+                         const enf_tet_mesh *tets) {
+    regions->spawn_count = (int32_t)mesh->spawn_count;
+    regions->spawn_cell = enf_array_new(mesh->spawn_count, sizeof *regions->spawn_cell);
+    if (!regions->spawn_cell) return false;
+    enf_cell_list list = {0};
+    bool good = true;
+    for (size_t s = 0; good && s < mesh->spawn_count; s++) {
+        good = enf_complex_cells_at(complex, tets, mesh->spawns + 3 * s, &list);
+        regions->spawn_cell[s] = best_cell(regions, &list);
+    }
+    enf_cell_list_free(&list);
+    for (int32_t s = 0; good && s < regions->spawn_count; s++) {
+        int32_t cell = regions->spawn_cell[s];
+        if (cell < 0) continue;
+        int32_t region = regions->cell_region[cell];
+        regions->kind[region] = regions->touches_outside[region] ? ENF_KIND_OUTSIDE : ENF_KIND_AIR;
+    }
+    return good;
+}
+
+static bool keep_spawned(enf_regions *regions) {
+    bool any = false;
+    for (int32_t s = 0; s < regions->spawn_count; s++) {
+        if (regions->spawn_cell[s] < 0) continue;
+        regions->kept[regions->cell_region[regions->spawn_cell[s]]] = true;
+        any = true;
+    }
+    return any;
+}
+
+static bool keep_kind(enf_regions *regions, enf_kind kind) {
+    bool any = false;
+    for (int32_t r = 0; r < regions->region_count; r++) {
+        if (regions->kind[r] != kind) continue;
+        regions->kept[r] = true;
+        any = true;
+    }
+    return any;
+}
+
+static enf_status keep_regions(enf_regions *regions, enf_keep keep, enf_error *error) {
+    bool any;
+    switch (keep) {
+    case ENF_KEEP_ALL:
+        memset(regions->kept, 1, (size_t)regions->region_count * sizeof *regions->kept);
+        return ENF_OK;
+    case ENF_KEEP_SPAWN:
+        if (keep_spawned(regions)) return ENF_OK;
+        return enf_fail(
+            error, ENF_BAD_INPUT,
+            "no spawn point lies in the world; add '# spawn x y z' lines or --spawn, or use --keep auto");
+    case ENF_KEEP_OUTSIDE:
+        any = keep_spawned(regions) || keep_kind(regions, ENF_KIND_AIR);
+        any |= keep_kind(regions, ENF_KIND_OUTSIDE);
+        break;
+    default:
+        any =
+            keep_spawned(regions) || keep_kind(regions, ENF_KIND_AIR) || keep_kind(regions, ENF_KIND_OUTSIDE);
+        break;
+    }
+    if (any) return ENF_OK;
+    return enf_fail(error, ENF_BAD_INPUT,
+                    "nothing is left to keep: every region is solid; are the polygons turned inside out? "
+                    "Name a spawn point or use --keep all");
+}
+
+// ---------------------------------------------------------------------------------------------- leaks
+
+typedef struct search {
+    int64_t *first; ///< open pieces of each cell: offsets, cells + 1
+    int32_t *pieces;
+    int32_t *from; ///< piece through which a cell was reached; -1: not yet, -2: the start
+    int32_t *queue;
+} search;
+
+static bool list_open_pieces(search *search, const enf_complex *complex, const int32_t *face_cell) {
+    size_t cells = (size_t)complex->cell_count;
+    search->first = enf_array_zeroed(cells + 2, sizeof *search->first);
+    search->from = enf_array_new(cells, sizeof *search->from);
+    search->queue = enf_array_new(cells, sizeof *search->queue);
+    search->pieces = enf_array_new(2 * (size_t)complex->pieces.count, sizeof *search->pieces);
+    if (!search->first || !search->from || !search->queue || !search->pieces) return false;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int32_t p = 0; p < complex->pieces.count; p++) {
+            if (complex->piece_cover[p] >= 0) continue;
+            for (int side = 0; side < 2; side++) {
+                if (complex->piece_face[p][side] < 0) continue;
+                int32_t cell = face_cell[complex->piece_face[p][side]];
+                if (pass == 0) {
+                    search->first[cell + 2]++;
+                } else {
+                    search->pieces[search->first[cell + 1]++] = p;
+                }
+            }
+        }
+        for (size_t c = 0; pass == 0 && c < cells; c++) search->first[c + 2] += search->first[c + 1];
+    }
+    for (size_t c = 0; c < cells; c++) search->from[c] = -1;
+    return true;
+}
+
+/// Fewest cells first. Returns the hull piece through which the outside is reached; *last is the cell before
+/// it.
+static int32_t search_outside(search *search, const enf_complex *complex, const int32_t *face_cell,
+                              int32_t start, int32_t *last) {
+    size_t head = 0, tail = 0;
+    search->queue[tail++] = start;
+    search->from[start] = -2;
+    while (head < tail) {
+        int32_t cell = search->queue[head++];
+        for (int64_t i = search->first[cell]; i < search->first[cell + 1]; i++) {
+            int32_t p = search->pieces[i];
+            const int32_t *face = complex->piece_face[p];
+            if (face[0] < 0 || face[1] < 0) {
+                *last = cell;
+                return p;
+            }
+            int32_t next = face_cell[face[face_cell[face[0]] == cell ? 1 : 0]];
+            if (search->from[next] != -1) continue;
+            search->from[next] = p;
+            search->queue[tail++] = next;
+        }
+    }
+    return -1;
+}
+
+static bool write_path(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
+                       const int32_t *face_cell, const search *search, int32_t exit, int32_t last) {
+    int32_t count = 2;
+    for (int32_t c = last; search->from[c] != -2; count++) {
+        const int32_t *face = complex->piece_face[search->from[c]];
+        c = face_cell[face[face_cell[face[0]] == c ? 1 : 0]];
+    }
+    regions->leak_points = enf_array_new((size_t)count, sizeof *regions->leak_points);
+    if (!regions->leak_points) return false;
+    regions->leak_point_count = count;
+    enf_complex_loop_centre(complex, &complex->pieces, exit, regions->leak_points[count - 1]);
+    int32_t at = count - 2;
+    for (int32_t c = last; search->from[c] != -2; at--) {
+        const int32_t *face = complex->piece_face[search->from[c]];
+        enf_complex_loop_centre(complex, &complex->pieces, search->from[c], regions->leak_points[at]);
+        c = face_cell[face[face_cell[face[0]] == c ? 1 : 0]];
+    }
+    memcpy(regions->leak_points[0], mesh->spawns + 3 * (size_t)regions->leak_spawn,
+           sizeof *regions->leak_points);
+    return true;
+}
+
+static bool trace_leak(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
+                       const int32_t *face_cell) {
+    for (int32_t s = 0; s < regions->spawn_count && !regions->leak; s++) {
+        int32_t cell = regions->spawn_cell[s];
+        if (cell < 0 || !regions->touches_outside[regions->cell_region[cell]]) continue;
+        regions->leak = true;
+        regions->leak_spawn = s;
+    }
+    if (!regions->leak) return true;
+    search search = {0};
+    int32_t last = -1;
+    bool good = list_open_pieces(&search, complex, face_cell);
+    if (good) {
+        int32_t start = regions->spawn_cell[regions->leak_spawn];
+        int32_t exit = search_outside(&search, complex, face_cell, start, &last);
+        good = exit < 0 || write_path(regions, complex, mesh, face_cell, &search, exit, last);
+    }
+    free(search.first);
+    free(search.pieces);
+    free(search.from);
+    free(search.queue);
+    return good;
+}
+
+enf_status enf_regions_colour(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
+                              const enf_tet_mesh *tets, enf_keep keep, enf_error *error) {
+    memset(regions, 0, sizeof *regions);
+    int32_t *face_cell = enf_complex_face_cells(complex);
+    bool good = face_cell && colour_cells(regions, complex, face_cell) && allocate(regions);
+    if (good) {
+        measure(regions, complex, face_cell);
+        good = enf_complex_wind(complex, face_cell, regions->cell_region, regions->region_count,
+                                regions->winding, regions->ambiguous);
+    }
+    if (good) {
+        judge(regions);
+        good = place_spawns(regions, complex, mesh, tets) && trace_leak(regions, complex, mesh, face_cell);
+    }
+    free(face_cell);
+    enf_status status = good ? keep_regions(regions, keep, error) : enf_fail_memory(error, "the regions");
+    if (status != ENF_OK) enf_regions_free(regions);
+    return status;
+}

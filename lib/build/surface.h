@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surfaces of the cells while they merge: which pieces bound a cell, and the area of its silhouette from any direction.
+//
+// A silhouette needs only the contour: the edges between pieces that face the direction and pieces that don't. Edges
+// inside the facing part cancel by their numbers, so the sweep sees a small part of a large surface.
+#ifndef ENF_BUILD_SURFACE_H
+#define ENF_BUILD_SURFACE_H
+
+#include "build/graph.h"
+#include "build/silhouette.h"
+
+/// A piece as one of its two cells sees it. Side s of piece p is number 2p + s.
+typedef struct enf_surface_side {
+    double outward[3]; ///< area vector, pointing out of the cell
+    int32_t next;      ///< the next side of the same cell, or -1
+} enf_surface_side;
+
+/// What is known of a cell as a body.
+typedef struct enf_body {
+    int32_t first_side, last_side; ///< the list of its sides, possibly with gone pieces in it; -1: none
+    int32_t side_count;            ///< length of that list
+    int32_t fine_count;            ///< fine cells in it; 1: convex
+    double volume;
+    double low[3], high[3]; ///< bounding box
+} enf_body;
+
+/// Pieces are numbered canonically (by their cells, then their corners), so nothing depends on their order in the graph.
+typedef struct enf_surface {
+    int32_t piece_count;
+    int32_t (*piece_cell)[2]; ///< fine cells; the smaller number first, -1 last
+    bool *piece_open;
+    bool *piece_gone;   ///< the cells of an open piece have become one
+    double *piece_area; ///< true area
+    int64_t *piece_edge; ///< piece_count + 1 offsets into piece_edges
+    int32_t *piece_edges; ///< 2 * edge, + 1 when the outline (counter-clockwise seen from cell 1's side) runs it backwards
+    enf_surface_side *sides;
+
+    int32_t edge_count;
+    int32_t (*edges)[2]; ///< vertex numbers
+    int32_t vertex_count;
+    double (*vertices)[3]; ///< corners that are equal to the last bit are one vertex
+
+    int32_t cell_count;
+    enf_body *bodies;
+
+    int32_t *edge_sum; ///< working memory, all zero between calls: how often the facing pieces run each edge
+    int32_t *touched;  ///< the edges with something in edge_sum
+    size_t touched_capacity;
+    int32_t *facing; ///< sides that face the direction
+    size_t facing_capacity;
+    enf_silhouette silhouette;
+} enf_surface;
+
+/// Copies what it needs of the graph. ENF_BAD_INPUT for cell numbers or offsets out of range.
+enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_error *error);
+void enf_surface_free(enf_surface *surface);
+
+/// Adds the body of `gone` to that of `kept`. The pieces between them must be marked as gone before the next silhouette.
+void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone);
+
+/// Area of the cell's silhouette seen along the unit vector `direction`. When half the sum of all projected pieces, an
+/// upper bound, is at most `enough`, returns that instead. Negative when there is no memory.
+double enf_surface_silhouette(enf_surface *surface, int32_t cell, const double direction[3], double enough);
+
+/// A lower bound of the same, from the volume and the extent along the direction, in constant time.
+double enf_surface_silhouette_bound(const enf_surface *surface, int32_t cell, const double direction[3]);
+
+/// True when the remaining pieces of the cell all have the same normal: then a body that has been joined to it along
+/// all its other pieces gained no silhouette by that, in any direction. Looks at no more than a few pieces.
+bool enf_surface_is_lid(const enf_surface *surface, int32_t cell);
+
+#endif

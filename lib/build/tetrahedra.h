@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tetrahedra of the clean points with their facets paired, and which tetrahedra each polygon meets.
+#ifndef ENF_BUILD_TETRAHEDRA_H
+#define ENF_BUILD_TETRAHEDRA_H
+
+#include "enfilade/base.h"
+
+typedef struct enf_tet_mesh {
+    int32_t count;
+    int32_t (*corners)[4]; ///< point numbers, positively oriented
+    int32_t (*facets)[4];  ///< the facet opposite each corner
+
+    int32_t facet_count;
+    int32_t (*facet_corners)[3]; ///< ascending; the front of the facet is where they turn counter-clockwise
+    int32_t (*facet_sides)[2];   ///< the tetrahedron behind, in front; -1: outside the hull
+
+    int32_t point_count;
+    int32_t *point_tetrahedron; ///< one tetrahedron at each point, or -1
+} enf_tet_mesh;
+
+void enf_tet_mesh_free(enf_tet_mesh *mesh);
+
+/// Pairs the faces of `count` tetrahedra by their corners; takes over `corners` (freed on failure too).
+/// ENF_NO_RESOURCES, with words, if a face has more than two tetrahedra or two on one side: the
+/// tetrahedralizer's output is broken then.
+enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t count, int32_t point_count,
+                             enf_error *error);
+
+#endif

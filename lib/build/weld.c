@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Welding by a hash grid over the representatives; flattening by a walk over sorted coordinates.
+#include "build/weld.h"
+
+#include "base/array.h"
+#include "base/hash.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int compare_sites(const void *left, const void *right) {
+    const enf_site *a = left, *b = right;
+    for (int k = 0; k < 3; k++)
+        if (a->at[k] != b->at[k]) return a->at[k] < b->at[k] ? -1 : 1;
+    return (a->id > b->id) - (a->id < b->id);
+}
+
+void enf_sites_sort(enf_site *sites, size_t count) {
+    qsort(sites, count, sizeof *sites, compare_sites);
+}
+
+static bool same_place(const enf_site *a, const enf_site *b) {
+    return a->at[0] == b->at[0] && a->at[1] == b->at[1] && a->at[2] == b->at[2];
+}
+
+size_t enf_sites_unite(enf_site *sites, size_t count, int32_t *group_of) {
+    size_t groups = 0;
+    for (size_t i = 0; i < count; i++) {
+        int32_t id = sites[i].id;
+        if (groups == 0 || !same_place(&sites[groups - 1], &sites[i])) sites[groups++] = sites[i];
+        group_of[id] = (int32_t)(groups - 1);
+    }
+    return groups;
+}
+
+/// Representatives in a hash table of chains; every chain is in rising order of position.
+typedef struct hash_grid {
+    const enf_site *sites;
+    double distance, reach, width; ///< reach: the distance, with room for rounding; width of a grid cell
+    size_t mask;
+    int32_t *head, *tail; ///< per slot, -1 = empty
+    int32_t *next;        ///< per site, -1 = end
+} hash_grid;
+
+static size_t grid_slot(const hash_grid *grid, double x, double y, double z) {
+    uint64_t hash = enf_hash_mix((uint64_t)(int64_t)x);
+    hash = enf_hash_mix(hash + (uint64_t)(int64_t)y);
+    return enf_hash_mix(hash + (uint64_t)(int64_t)z) & grid->mask;
+}
+
+static bool is_near(const hash_grid *grid, int32_t a, int32_t b) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        double difference = grid->sites[a].at[k] - grid->sites[b].at[k];
+        sum += difference * difference;
+    }
+    return sum <= grid->distance * grid->distance;
+}
+
+/// The first representative near `site`, or -1.
+static int32_t find_near(const hash_grid *grid, int32_t site) {
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = floor((grid->sites[site].at[k] - grid->reach) / grid->width);
+        high[k] = floor((grid->sites[site].at[k] + grid->reach) / grid->width);
+    }
+    int32_t first = -1;
+    for (double x = low[0]; x <= high[0]; x++)
+        for (double y = low[1]; y <= high[1]; y++)
+            for (double z = low[2]; z <= high[2]; z++)
+                for (int32_t i = grid->head[grid_slot(grid, x, y, z)]; i >= 0 && (first < 0 || i < first);
+                     i = grid->next[i])
+                    if (is_near(grid, i, site)) first = i;
+    return first;
+}
+
+static void add_representative(hash_grid *grid, int32_t site) {
+    const double *at = grid->sites[site].at;
+    size_t slot =
+        grid_slot(grid, floor(at[0] / grid->width), floor(at[1] / grid->width), floor(at[2] / grid->width));
+    grid->next[site] = -1;
+    if (grid->head[slot] < 0)
+        grid->head[slot] = site;
+    else
+        grid->next[grid->tail[slot]] = site;
+    grid->tail[slot] = site;
+}
+
+enf_status enf_sites_weld(const enf_site *sites, size_t count, double distance, int32_t *joined_to,
+                          enf_error *error) {
+    if (distance < 1) { // different grid points are at least 1 apart
+        for (size_t i = 0; i < count; i++) joined_to[i] = (int32_t)i;
+        return ENF_OK;
+    }
+    hash_grid grid = {.sites = sites, .distance = fmin(distance, 0x1p56)};
+    grid.reach = grid.distance * (1 + 0x1p-40) + 1;
+    grid.width = 4 * grid.reach;
+    size_t slots = 16;
+    while (slots < count + count / 2) slots *= 2;
+    grid.mask = slots - 1;
+    grid.head = enf_array_new(slots, sizeof *grid.head);
+    grid.tail = enf_array_new(slots, sizeof *grid.tail);
+    grid.next = enf_array_new(count, sizeof *grid.next);
+    enf_status status = ENF_OK;
+    if (!grid.head || !grid.tail || !grid.next) {
+        status = enf_fail_memory(error, "welding");
+    } else {
+        memset(grid.head, -1, slots * sizeof *grid.head);
+        for (size_t i = 0; i < count; i++) {
+            joined_to[i] = find_near(&grid, (int32_t)i);
+            if (joined_to[i] >= 0) continue;
+            joined_to[i] = (int32_t)i;
+            add_representative(&grid, (int32_t)i);
+        }
+    }
+    free(grid.head);
+    free(grid.tail);
+    free(grid.next);
+    return status;
+}
+
+static int compare_doubles(const void *left, const void *right) {
+    double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+/// The value that `x` takes: the last cluster's first value that is not above it.
+static double cluster_of(const double *firsts, size_t count, double x) {
+    size_t low = 0, high = count;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (firsts[middle] <= x)
+            low = middle;
+        else
+            high = middle;
+    }
+    return firsts[low];
+}
+
+enf_status enf_sites_flatten(enf_site *sites, size_t count, double tolerance, enf_error *error) {
+    if (tolerance < 1 || count == 0) return ENF_OK;
+    double *values = enf_array_new(count, sizeof *values);
+    if (!values) return enf_fail_memory(error, "the planes");
+    for (int axis = 0; axis < 3; axis++) {
+        for (size_t i = 0; i < count; i++) values[i] = sites[i].at[axis];
+        qsort(values, count, sizeof *values, compare_doubles);
+        size_t clusters = 1;
+        for (size_t i = 1; i < count; i++)
+            if (values[i] - values[clusters - 1] > tolerance) values[clusters++] = values[i];
+        for (size_t i = 0; i < count; i++)
+            sites[i].at[axis] = cluster_of(values, clusters, sites[i].at[axis]);
+    }
+    free(values);
+    return ENF_OK;
+}

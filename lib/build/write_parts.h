@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts of an image that are made for the file: point location and what is drawn. Used by write.c only.
+#ifndef ENF_BUILD_WRITE_PARTS_H
+#define ENF_BUILD_WRITE_PARTS_H
+
+#include "build/write.h"
+
+/// Zeroed memory that the image frees; null without memory.
+void *enf_image_new(enf_image *image, size_t count, size_t size);
+
+/// Takes over memory made elsewhere.
+void enf_image_own(enf_image *image, void *memory);
+
+/// A string for the file. False without memory.
+typedef struct enf_image_strings {
+    char *bytes;
+    size_t count, capacity;
+} enf_image_strings;
+bool enf_image_add_string(enf_image_strings *strings, const char *text, uint32_t *offset);
+
+/// Neighbours of tetrahedra, and the boxes around them. Needs points, tetrahedra and the frame.
+enf_status enf_image_locate(enf_image *image, enf_error *error);
+
+/// Render points, triangles, groups, materials, and what each cell sees. Needs everything else.
+enf_status enf_image_draw(enf_image *image, const enf_build *build, enf_image_strings *strings,
+                          enf_error *error);
+
+#endif

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+// The bytes of a world file (.enf) as C structs, and a view of a file whose every count and index has been
+// checked. lib/format/layout.md describes the same byte by byte, with the rules for older and newer versions.
+//
+// Two coordinate systems: *world* is what the user gave; *grid* is whole numbers of grid steps in the
+// canonical frame (see enf_file_frame). What a runtime draws or clips with is in world coordinates; the exact
+// complex is in grid coordinates, where it is exact.
+#ifndef ENFILADE_FORMAT_H
+#define ENFILADE_FORMAT_H
+
+#include "enfilade/base.h"
+
+#define ENF_FILE_MAGIC "ENFILADE"            ///< 8 bytes, no terminating zero in the file
+#define ENF_FILE_MAJOR 1                     ///< a reader refuses another major version
+#define ENF_FILE_MINOR 0                     ///< a reader accepts any minor version of its major one
+#define ENF_FILE_ALIGNMENT 16                ///< sections begin at multiples of this
+#define ENF_FILE_GRID_MAX 9007199254740992.0 ///< 2^53: no grid coordinate is larger in magnitude
+
+/// The first 64 bytes.
+typedef struct enf_file_header {
+    char magic[8];
+    uint32_t major, minor;
+    uint32_t header_size; ///< 64
+    uint32_t entry_size;  ///< 48: bytes of one enf_file_section
+    uint32_t section_count;
+    uint32_t reserved; ///< 0
+    uint64_t file_size;
+    uint64_t table_offset;
+    uint64_t table_checksum;  ///< enf_hash64 of the table, seed 0
+    uint64_t header_checksum; ///< enf_hash64 of the 56 bytes before this field, seed 0
+} enf_file_header;
+
+/// One entry of the section table.
+typedef struct enf_file_section {
+    char tag[8];           ///< padded with zeros
+    uint64_t offset, size; ///< bytes; offset is a multiple of 16
+    uint64_t count;        ///< elements; count * element_size = size
+    uint64_t checksum;     ///< enf_hash64 of the section's bytes, seed 0
+    uint32_t element_size;
+    uint32_t flags; ///< ENF_FILE_MUST_KNOW
+} enf_file_section;
+
+#define ENF_FILE_MUST_KNOW 1u ///< a reader that does not know this section must refuse the file
+
+/// How the world was made. Neither times nor threads nor paths: the same input and options give the same
+/// bytes.
+typedef struct enf_file_provenance {
+    uint32_t version[3]; ///< of the program: major, minor, patch
+    uint32_t options;    ///< string: the options as JSON ("" if none were given)
+    uint64_t input_hash; ///< enf_soup.content_hash
+    int64_t input_vertices, input_polygons, input_rejected;
+    int64_t welded, triangulated, two_sided; ///< by clean
+    int64_t tetrahedra_cut;
+    int64_t fine_cells_discarded, fine_cells_active;
+    int64_t portals_initial, collapses;
+    int64_t pieces_merged, slivers; ///< by the portal stage
+    int64_t leak;                   ///< 1: a spawn's region reaches the outside
+} enf_file_provenance;
+
+/// grid[a] = sign[a] * world[axis[a]] / step
+typedef struct enf_file_frame {
+    double step;        ///< a power of two, world units
+    int32_t axis[3];    ///< a permutation of 0 1 2
+    int32_t sign[3];    ///< +1 or -1
+    int32_t handedness; ///< +1 or -1; -1: grid is a mirror image, loops turn the other way in the world
+    int32_t reserved;
+    double box_min[3], box_max[3];              ///< of all clean points, world
+    double weld, plane_tolerance;               ///< the tolerances used, world units
+    double displacement_max, displacement_mean; ///< how far clean moved points, world units
+    double locate_scale;    ///< a power of two >= 1: points are located on a grid this many times finer
+    double locate_rounding; ///< grid steps; a point this little outside the hull still counts as inside
+} enf_file_frame;
+
+/// Corner of a loop: see enf_corner in lib/build/complex.h.
+typedef struct enf_file_corner {
+    int32_t vertex;
+    int32_t edge_plane;
+} enf_file_corner;
+
+typedef struct enf_file_region {
+    double volume;                ///< world units cubed
+    double front_area, back_area; ///< of the occluders around it, world units squared
+    int32_t winding;
+    uint8_t kind; ///< 0 air, 1 rock, 2 outside
+    uint8_t kept, touches_outside, ambiguous;
+} enf_file_region;
+
+typedef struct enf_file_spawn {
+    double position[3]; ///< world
+    int32_t fine_cell;  ///< -1: outside the hull
+    int32_t cell;       ///< -1: in a discarded region
+} enf_file_spawn;
+
+/// A cell: a connected union of fine cells of one region.
+typedef struct enf_file_cell {
+    double box_min[3], box_max[3]; ///< world
+    double volume;                 ///< world units cubed
+    int64_t triangle_first;        ///< range of cell_triangles
+    int32_t triangle_count;
+    int32_t portal_first, portal_count; ///< range of cell_portals
+    int32_t region;
+} enf_file_cell;
+
+/// A directed portal. Its twin, which leads back, is number i ^ 1; even ones lead to the higher cell number.
+typedef struct enf_file_portal {
+    int32_t from, to;                     ///< cells
+    int32_t polygon_first, polygon_count; ///< range of portal_polygons, at least one
+    double centre[3], radius;             ///< bounding sphere, world
+} enf_file_portal;
+
+/// One convex polygon of a directed portal. It faces the cell it leads from, like a wall would:
+/// counter-clockwise seen from there, and the plane is positive there. The n-th polygon of the twin is the
+/// same one turned over.
+typedef struct enf_file_portal_polygon {
+    double plane[4];                    ///< world; a x + b y + c z + d, (a, b, c) of length 1
+    double area;                        ///< world units squared
+    int32_t vertex_first, vertex_count; ///< range of portal_vertices, at least three
+    int32_t loop;                       ///< the exact polygon: portal_loop_* of the view
+    int32_t reserved;
+} enf_file_portal_polygon;
+
+/// A node of the bounding volume hierarchy over tetrahedra, in depth-first order: walk forward, and where the
+/// point is outside the box jump to `next`. A leaf holds one tetrahedron.
+typedef struct enf_file_box {
+    float min[3], max[3]; ///< grid steps, rounded outwards
+    int32_t next;         ///< > this node's number, <= box_count
+    int32_t tetrahedron;  ///< -1: not a leaf
+} enf_file_box;
+
+/// A triangle to draw, counter-clockwise from its front.
+typedef struct enf_file_triangle {
+    int32_t point[3];     ///< render_points
+    int32_t normal[3];    ///< render_normals, or -1
+    int32_t texcoord[3];  ///< render_texcoords, or -1
+    int32_t polygon;      ///< input polygon, in the order of the input
+    int32_t group;        ///< group_names
+    int32_t material;     ///< material_names, or -1
+    int32_t mesh_polygon; ///< clean polygon it belongs to; -1: detail (drawn, not cutting)
+    int32_t cell;         ///< detail: the cell that holds its middle, or -1; otherwise -1
+} enf_file_triangle;
+
+/// Pointers into a checked file. All arrays are the file's own bytes; "offsets" arrays have one entry more
+/// than what they divide. Parts that a file may leave out have null pointers and counts of 0.
+typedef struct enf_file_view {
+    const uint8_t *bytes;
+    size_t size;
+    const enf_file_header *header;
+    const enf_file_section *sections; ///< header->section_count
+
+    const enf_file_provenance *provenance;
+    const enf_file_frame *frame;
+    const char *strings; ///< zero-terminated texts one after the other; a string is an offset into it
+    int64_t string_bytes;
+
+    // World: regions, cells, portals.
+    int32_t region_count;
+    const enf_file_region *regions;
+    int32_t spawn_count;
+    const enf_file_spawn *spawns;
+    int32_t leak_point_count;
+    const double (*leak_points)[3]; ///< world; from the spawn to the outside
+
+    int32_t cell_count;
+    const enf_file_cell *cells;
+    int32_t portal_count; ///< directed ones: twice the number of openings
+    const enf_file_portal *portals;
+    int32_t portal_polygon_count;
+    const enf_file_portal_polygon *portal_polygons;
+    int32_t portal_vertex_count;
+    const double (*portal_vertices)[3]; ///< world
+    int32_t cell_portal_count;
+    const int32_t *cell_portals; ///< portals that lead out of each cell, ascending
+
+    // Point location, grid coordinates. Shared with the exact complex.
+    int32_t point_count;
+    const double (*points)[3];
+    int32_t plane_count;
+    const int32_t (*planes)[3]; ///< as in enf_complex
+    int32_t tetrahedron_count;
+    const int32_t (*tetrahedra)[4];
+    const int32_t *tetrahedron_root; ///< >= 0: node; < 0: fine cell -1 - root
+    const int32_t (
+        *tetrahedron_next)[4]; ///< the tetrahedron across the face opposite to each corner; -1: the hull
+    int32_t node_count;
+    const int32_t *node_plane;
+    const int32_t (
+        *node_child)[2]; ///< behind, in front; >= 0: a node with a higher number; < 0: fine cell -1 - child
+    const double (
+        *node_normal)[3]; ///< of the node's plane, length 1; the plane goes through points[planes[p][0]]
+    int32_t fine_count;
+    const int32_t *fine_tetrahedron;
+    const int32_t *fine_region;
+    const int32_t *fine_cell; ///< the cell it went into; -1: discarded
+    int32_t box_count;
+    const enf_file_box *boxes;
+
+    // The exact complex (all or nothing); the arrays of enf_complex and enf_mesh, see there.
+    bool has_exact;
+    int32_t vertex_count;
+    const int32_t (*vertex_planes)[3];
+    const double (*vertex_position)[3];
+    const int32_t *node_facet;
+    const int32_t *fine_face; ///< fine_count + 1
+    int32_t face_count;
+    const int64_t *face_offset;
+    int64_t face_corner_count;
+    const enf_file_corner *face_corners;
+    const int32_t *face_facet;
+    const uint8_t *face_side;
+    int32_t facet_count;
+    const int32_t *facet_plane;
+    const uint8_t *facet_hull;  ///< 0 or 1
+    const int32_t *facet_cover; ///< facet_count + 1
+    const int32_t *facet_piece; ///< facet_count + 1
+    int32_t cover_count;
+    const int64_t *cover_offset;
+    int64_t cover_corner_count;
+    const enf_file_corner *cover_corners;
+    const int32_t *cover_polygon;
+    const uint8_t *cover_side;
+    int32_t piece_count;
+    const int64_t *piece_offset;
+    int64_t piece_corner_count;
+    const enf_file_corner *piece_corners;
+    const int32_t (*piece_face)[2];
+    const int32_t *piece_cover;
+    const int64_t *seen_offset; ///< fine_count + 1
+    int64_t seen_count;
+    const int32_t *seen; ///< mesh polygons
+    int32_t mesh_polygon_count;
+    const int64_t *mesh_polygon_corner; ///< mesh_polygon_count + 1
+    int64_t mesh_corner_count;
+    const int32_t *mesh_corners;            ///< points
+    const int32_t *mesh_polygon_source;     ///< input polygon
+    const int32_t (*mesh_polygon_plane)[3]; ///< points
+    int32_t portal_loop_count;              ///< enf_portals.polygons: half as many as portal_polygons
+    const int64_t *portal_loop_offset;
+    int64_t portal_loop_corner_count;
+    const enf_file_corner *portal_loop_corners;
+    const int32_t *portal_loop_plane;
+    const uint8_t *portal_loop_side; ///< 1: the higher cell lies in front of the plane; 0: the lower does
+
+    // What is drawn (all or nothing), world coordinates.
+    bool has_geometry;
+    int32_t render_point_count;
+    const double (*render_points)[3]; ///< the input's points in its order; then corners that only clean knows
+    int32_t render_normal_count;
+    const double (*render_normals)[3];
+    int32_t render_texcoord_count;
+    const double (*render_texcoords)[2];
+    int32_t triangle_count;
+    const enf_file_triangle *triangles; ///< those of clean polygons in their order, then detail
+    int64_t cell_triangle_count;
+    const int32_t
+        *cell_triangles; ///< per cell the triangles whose front it sees, and detail near it; ascending
+    int32_t group_count;
+    const uint32_t *group_names; ///< strings
+    int32_t material_count;
+    const uint32_t *material_names; ///< strings
+} enf_file_view;
+
+#endif

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// Point location: boxes around tetrahedra give the candidates, four sides decide each, and the tree of cuts
+// inside a tetrahedron gives the fine cell. All sides are exact, so a point on a boundary is *known* to be on
+// it, and the rule for boundaries (run.h) can be kept to the letter.
+//
+// A hint, the fine cell of an earlier answer, is tried first: its tetrahedron, then a walk towards the point
+// across faces (O. Devillers, S. Pion, M. Teillaud, "Walking in a triangulation", 2002), for a bounded number
+// of steps.
+#include "run/locate.h"
+
+#include "run/orient.h"
+
+#include <math.h>
+
+#define WALK_STEPS_MAX 24
+#define BRANCHES_MAX \
+    64 // cut planes of one tetrahedron that go through the point; more are not followed twice
+
+typedef struct query {
+    const enf_file_view *view;
+    double at[3]; ///< whole numbers of the finer grid: grid coordinates times frame->locate_scale
+    int32_t best; ///< fine cell, or -1
+} query;
+
+// Corner k is opposite to the face with these corners, which turn counter-clockwise seen from inside.
+static const int face_corner[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+
+static void load_point(const query *query, int32_t point, double out[3]) {
+    const double *from = query->view->points[point], scale = query->view->frame->locate_scale;
+    for (int a = 0; a < 3; a++) out[a] = from[a] * scale;
+}
+
+/// How the point lies to the face opposite to corner `face`: +1 inside.
+static int face_side(const query *query, int32_t tetrahedron, int face) {
+    double a[3], b[3], c[3];
+    const int32_t *corners = query->view->tetrahedra[tetrahedron];
+    load_point(query, corners[face_corner[face][0]], a);
+    load_point(query, corners[face_corner[face][1]], b);
+    load_point(query, corners[face_corner[face][2]], c);
+    return enf_orient(a, b, c, query->at);
+}
+
+/// +1 strictly inside the tetrahedron, 0 on its boundary, -1 outside. *away: a face that has the point
+/// outside.
+static int tetrahedron_side(const query *query, int32_t tetrahedron, int *away) {
+    int least = 1;
+    for (int face = 0; face < 4; face++) {
+        int side = face_side(query, tetrahedron, face);
+        if (side < 0) {
+            *away = face;
+            return -1;
+        }
+        if (side < least) least = side;
+    }
+    return least;
+}
+
+static int plane_side(const query *query, int32_t plane) {
+    const int32_t *through = query->view->planes[plane];
+    double a[3], b[3], c[3];
+    load_point(query, through[0], a);
+    load_point(query, through[1], b);
+    if (through[2] >= 0) {
+        load_point(query, through[2], c);
+    } else {
+        // One step of the finer grid along the axis, or against it at the very edge of the range.
+        int axis = -1 - through[2];
+        for (int i = 0; i < 3; i++) c[i] = a[i];
+        double step = a[axis] < 0 ? 1 : -1;
+        c[axis] += step;
+        return enf_orient(a, b, c, query->at) * (int)step;
+    }
+    return enf_orient(a, b, c, query->at);
+}
+
+/// Cells before discarded space, then the lower number.
+static void consider(query *query, int32_t fine) {
+    const int32_t *cell = query->view->fine_cell;
+    int32_t best = query->best;
+    if (best < 0 || (cell[fine] >= 0) > (cell[best] >= 0) ||
+        ((cell[fine] >= 0) == (cell[best] >= 0) && fine < best))
+        query->best = fine;
+}
+
+/// Considers every fine cell of the tetrahedron that touches the point. True if there is one only.
+static bool descend(query *query, int32_t tetrahedron) {
+    const enf_file_view *view = query->view;
+    int32_t waiting[BRANCHES_MAX];
+    int count = 0;
+    bool single = true;
+    waiting[count++] = view->tetrahedron_root[tetrahedron];
+    while (count > 0) {
+        int32_t node = waiting[--count];
+        while (node >= 0) {
+            int side = plane_side(query, view->node_plane[node]);
+            if (side == 0) {
+                single = false;
+                if (count < BRANCHES_MAX) waiting[count++] = view->node_child[node][0];
+            }
+            node = view->node_child[node][side >= 0];
+        }
+        consider(query, -1 - node);
+    }
+    return single;
+}
+
+/// The walk from a hint. True if it ended strictly inside a fine cell; otherwise nothing has been found.
+static bool walk(query *query, int32_t hint) {
+    const enf_file_view *view = query->view;
+    int32_t tetrahedron = view->fine_tetrahedron[hint];
+    for (int step = 0; step < WALK_STEPS_MAX && tetrahedron >= 0; step++) {
+        int away = 0, side = tetrahedron_side(query, tetrahedron, &away);
+        if (side > 0) {
+            if (descend(query, tetrahedron)) return true;
+            query->best = -1;
+            return false;
+        }
+        if (side == 0) return false;
+        tetrahedron = view->tetrahedron_next[tetrahedron][away];
+    }
+    return false;
+}
+
+static bool box_holds(const enf_file_box *box, const double at[3]) {
+    return at[0] >= box->min[0] && at[0] <= box->max[0] && at[1] >= box->min[1] && at[1] <= box->max[1] &&
+           at[2] >= box->min[2] && at[2] <= box->max[2];
+}
+
+static void search(query *query) {
+    const enf_file_view *view = query->view;
+    double grid[3];
+    for (int a = 0; a < 3; a++) grid[a] = query->at[a] / view->frame->locate_scale;
+    for (int32_t i = 0; i < view->box_count;) {
+        const enf_file_box *box = &view->boxes[i];
+        if (!box_holds(box, grid)) {
+            i = box->next;
+            continue;
+        }
+        i++;
+        if (box->tetrahedron < 0) continue;
+        int away, side = tetrahedron_side(query, box->tetrahedron, &away);
+        if (side >= 0) descend(query, box->tetrahedron);
+        if (side > 0) return;
+    }
+}
+
+/// How far (grid steps, rounded) the point lies outside the tetrahedron, by the face that is violated most.
+static double outside_distance(const query *query, int32_t tetrahedron) {
+    double most = 0;
+    for (int face = 0; face < 4; face++) {
+        double corner[3][3], normal[3];
+        for (int k = 0; k < 3; k++)
+            load_point(query, query->view->tetrahedra[tetrahedron][face_corner[face][k]], corner[k]);
+        for (int a = 0; a < 3; a++) {
+            int b = (a + 1) % 3, c = (a + 2) % 3;
+            normal[a] = (corner[1][b] - corner[0][b]) * (corner[2][c] - corner[0][c]) -
+                        (corner[1][c] - corner[0][c]) * (corner[2][b] - corner[0][b]);
+        }
+        double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]), sum = 0;
+        for (int a = 0; a < 3; a++) sum -= normal[a] * (query->at[a] - corner[0][a]);
+        if (length > 0 && sum / length > most) most = sum / length;
+    }
+    return most / query->view->frame->locate_scale;
+}
+
+/// No tetrahedron holds the point, but it may lie outside the hull by rounding only: take the nearest.
+static void search_nearest(query *query) {
+    const enf_file_view *view = query->view;
+    double grid[3], nearest = view->frame->locate_rounding;
+    int32_t found = -1;
+    for (int a = 0; a < 3; a++) grid[a] = query->at[a] / view->frame->locate_scale;
+    for (int32_t i = 0; i < view->box_count;) {
+        const enf_file_box *box = &view->boxes[i];
+        bool inside = box_holds(box, grid);
+        i = inside ? i + 1 : box->next;
+        if (!inside || box->tetrahedron < 0) continue;
+        double distance = outside_distance(query, box->tetrahedron);
+        if (distance > nearest || (distance == nearest && found >= 0 && box->tetrahedron > found)) continue;
+        nearest = distance;
+        found = box->tetrahedron;
+    }
+    if (found >= 0) descend(query, found);
+}
+
+enf_place enf_view_locate(const enf_file_view *view, const double point[3], int32_t hint) {
+    const enf_file_frame *frame = view->frame;
+    const enf_place nowhere = {-1, -1, -1, ENF_WORLD_OUTSIDE};
+    query query = {.view = view, .best = -1};
+    for (int a = 0; a < 3; a++) {
+        double scaled = frame->sign[a] * (point[frame->axis[a]] / frame->step) * frame->locate_scale;
+        if (!(fabs(scaled) <= ENF_FILE_GRID_MAX)) return nowhere;
+        query.at[a] = nearbyint(scaled);
+    }
+    bool hinted = hint >= 0 && hint < view->fine_count && walk(&query, hint);
+    if (!hinted) search(&query);
+    if (query.best < 0) search_nearest(&query);
+    if (query.best < 0) return nowhere;
+    int32_t region = view->fine_region[query.best];
+    enf_place place = {view->fine_cell[query.best], query.best, region, ENF_WORLD_AIR};
+    place.kind = (enf_world_kind)view->regions[region].kind;
+    return place;
+}
+
+enf_place enf_world_locate(const enf_world *world, const double point[3], int32_t hint) {
+    return enf_view_locate(enf_world_file(world), point, hint);
+}

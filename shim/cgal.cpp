@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Delaunay tetrahedra by CGAL. Predicates are exact; cospherical points are broken by the symbolic
+// perturbation of Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D
+// triangulations" (2011), which orders points lexicographically and leaves no flat tetrahedra: the result
+// depends on the set of points only. The only file that includes CGAL (heavy to compile).
+#include "shim/shim.h"
+#include "shim/tetrahedra.hpp"
+
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <cfenv>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<int32_t, Kernel>;
+using Structure =
+    CGAL::Triangulation_data_structure_3<VertexBase, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, Structure>;
+
+// CGAL's interval arithmetic rounds upwards while it works; whatever happens inside, the caller's mode comes
+// back.
+class RoundingMode {
+  public:
+    RoundingMode() : mode(std::fegetround()) { std::fesetround(FE_TONEAREST); }
+    ~RoundingMode() { std::fesetround(mode); }
+    RoundingMode(const RoundingMode &) = delete;
+    RoundingMode &operator=(const RoundingMode &) = delete;
+
+  private:
+    int mode;
+};
+
+Delaunay triangulate(const double *points, size_t point_count) {
+    std::vector<std::pair<Kernel::Point_3, int32_t>> input;
+    input.reserve(point_count);
+    for (size_t i = 0; i < point_count; ++i) {
+        const double *point = points + 3 * i;
+        input.emplace_back(Kernel::Point_3(point[0], point[1], point[2]), static_cast<int32_t>(i));
+    }
+    return Delaunay(input.begin(), input.end());
+}
+
+enf_status take_cells(const Delaunay &delaunay, enf_tetrahedra *out, enf_error *error) {
+    const enf_status status = enf::reserve_tetrahedra(delaunay.number_of_finite_cells(), out, error);
+    if (status != ENF_OK) return status;
+    for (auto cell : delaunay.finite_cell_handles()) {
+        int32_t *corners = out->corners[out->count++];
+        for (int k = 0; k < 4; ++k) corners[k] = cell->vertex(k)->info();
+    }
+    enf::sort_tetrahedra(*out);
+    return ENF_OK;
+}
+
+} // namespace
+
+extern "C" enf_status enf_shim_delaunay_cgal(const double *points, size_t point_count, enf_tetrahedra *out,
+                                             enf_error *error) {
+    *out = enf_tetrahedra{nullptr, 0};
+    const RoundingMode restore;
+    try {
+        if (point_count > INT32_MAX)
+            return enf_fail(error, ENF_NO_RESOURCES,
+                            "%zu points are more than CGAL's tetrahedralizer is given (%d); "
+                            "split the world",
+                            point_count, INT32_MAX);
+        const Delaunay delaunay = triangulate(points, point_count);
+        if (delaunay.number_of_vertices() != point_count)
+            return enf_fail(error, ENF_BAD_INPUT, "%zu of %zu points are equal to others; weld them first",
+                            point_count - delaunay.number_of_vertices(), point_count);
+        if (delaunay.dimension() < 3)
+            return enf_fail(error, ENF_BAD_INPUT, "all points lie in one plane; a world needs some volume");
+        return take_cells(delaunay, out, error);
+    } catch (const std::bad_alloc &) {
+        return enf_fail_memory(error, "the Delaunay tetrahedra (CGAL)");
+    } catch (const std::exception &exception) {
+        return enf_fail(error, ENF_NO_RESOURCES, "CGAL's Delaunay failed: %s; try --tetrahedralizer tetgen",
+                        exception.what());
+    } catch (...) {
+        return enf_fail(error, ENF_NO_RESOURCES, "CGAL's Delaunay failed; try --tetrahedralizer tetgen");
+    }
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Fuzz target for the opener and the queries (libFuzzer: clang -fsanitize=fuzzer,address,undefined; also
+// called by test_format.c with mutated worlds). Whatever the bytes are, the outcome is an error or a world
+// that can be used.
+#include "base/hash.h"
+#include "enfilade/run.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static volatile double sink; // what is read must not be optimised away
+
+static void use_portals(const enf_file_view *file, const enf_file_cell *cell) {
+    for (int32_t i = 0; i < cell->portal_count; i++) {
+        const enf_file_portal *portal = &file->portals[file->cell_portals[cell->portal_first + i]];
+        sink += portal->radius + file->cells[portal->to].volume;
+        for (int32_t p = 0; p < portal->polygon_count; p++) {
+            const enf_file_portal_polygon *polygon = &file->portal_polygons[portal->polygon_first + p];
+            for (int32_t v = 0; v < polygon->vertex_count; v++)
+                sink += file->portal_vertices[polygon->vertex_first + v][2] * polygon->plane[2];
+            if (file->has_exact) sink += (double)file->portal_loop_offset[polygon->loop + 1];
+        }
+    }
+}
+
+static void use_triangles(const enf_world *world, const enf_file_view *file, const enf_file_cell *cell) {
+    for (int64_t i = 0; file->has_geometry && i < cell->triangle_count; i++) {
+        const enf_file_triangle *triangle = &file->triangles[file->cell_triangles[cell->triangle_first + i]];
+        sink += strlen(enf_world_string(world, file->group_names[triangle->group]));
+        if (triangle->material >= 0)
+            sink += strlen(enf_world_string(world, file->material_names[triangle->material]));
+        for (int k = 0; k < 3; k++) {
+            sink += file->render_points[triangle->point[k]][0];
+            if (triangle->normal[k] >= 0) sink += file->render_normals[triangle->normal[k]][2];
+            if (triangle->texcoord[k] >= 0) sink += file->render_texcoords[triangle->texcoord[k]][1];
+        }
+    }
+}
+
+static void use_loops(const enf_file_view *file, int32_t count, const int64_t *offset,
+                      const enf_file_corner *corners) {
+    for (int32_t i = 0; i < count; i++) {
+        for (int64_t k = offset[i]; k < offset[i + 1]; k++) {
+            sink += file->vertex_position[corners[k].vertex][0];
+            sink += file->planes[corners[k].edge_plane][1];
+        }
+    }
+}
+
+static void use_exact(const enf_file_view *file) {
+    if (!file->has_exact) return;
+    use_loops(file, file->face_count, file->face_offset, file->face_corners);
+    use_loops(file, file->cover_count, file->cover_offset, file->cover_corners);
+    use_loops(file, file->piece_count, file->piece_offset, file->piece_corners);
+    use_loops(file, file->portal_loop_count, file->portal_loop_offset, file->portal_loop_corners);
+    for (int32_t i = 0; i < file->fine_count; i++) {
+        for (int32_t k = file->fine_face[i]; k < file->fine_face[i + 1]; k++)
+            sink += file->facet_plane[file->face_facet[k]];
+        for (int64_t k = file->seen_offset[i]; k < file->seen_offset[i + 1]; k++)
+            sink += file->mesh_polygon_source[file->seen[k]];
+    }
+}
+
+static void use_locate(const enf_world *world, const enf_file_view *file) {
+    int32_t hint = -1;
+    for (int32_t i = 0; i < file->point_count && i < 200; i++) {
+        double at[3];
+        for (int a = 0; a < 3; a++)
+            at[file->frame->axis[a]] = file->points[i][a] * file->frame->step * file->frame->sign[a];
+        for (int k = 0; k < 2; k++, at[k] += 0.3 * file->frame->step) {
+            enf_place place = enf_world_locate(world, at, hint);
+            hint = place.fine_cell;
+            if (place.cell >= 0) sink += file->cells[place.cell].volume;
+            if (place.region >= 0) sink += file->regions[place.region].volume;
+            sink += strlen(enf_world_kind_name(place.kind));
+        }
+    }
+}
+
+static void use(const enf_world *world) {
+    const enf_file_view *file = enf_world_file(world);
+    enf_world_info info;
+    enf_world_get_info(world, &info);
+    sink += (double)strlen(info.options);
+    for (int32_t i = 0; i < file->cell_count; i++) {
+        use_portals(file, &file->cells[i]);
+        use_triangles(world, file, &file->cells[i]);
+    }
+    use_exact(file);
+    use_locate(world, file);
+}
+
+static void open_and_use(const uint8_t *bytes, size_t size, bool skip_checksums) {
+    enf_world *world;
+    enf_error error;
+    enf_open_options options = {sizeof options, skip_checksums};
+    if (enf_world_open_memory(&world, bytes, size, &options, &error) == ENF_OK) use(world);
+    enf_world_close(world);
+}
+
+/// Makes header and table pass their checksums, so that mutations get behind them.
+static void repair(uint8_t *bytes, size_t size) {
+    enf_file_header *header = (void *)bytes;
+    if (size < sizeof *header) return;
+    header->file_size = size;
+    uint64_t table_size = (uint64_t)header->section_count * sizeof(enf_file_section);
+    if (header->table_offset <= size && table_size <= size - header->table_offset)
+        header->table_checksum = enf_hash64(bytes + header->table_offset, (size_t)table_size, 0);
+    header->header_checksum = enf_hash64(header, offsetof(enf_file_header, header_checksum), 0);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    uint8_t *copy =
+        calloc(size ? size : 1, 1); // exactly as large, so that a sanitizer sees one byte too many
+    if (!copy) return 0;
+    if (size) memcpy(copy, data, size);
+    open_and_use(copy, size, false);
+    repair(copy, size);
+    open_and_use(copy, size, true);
+    free(copy);
+    return 0;
+}

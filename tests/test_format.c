@@ -1,0 +1,548 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The file: what is written comes back, and nothing that is wrong with a file gets past the opener.
+#include "world_fixture.h"
+
+#include "base/hash.h"
+#include "enfilade/run.h"
+#include "format/read.h"
+#include "format/save.h"
+#include "format/sections.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+typedef struct saved {
+    fixture fixture;
+    unsigned char *bytes;
+    size_t size;
+} saved;
+
+static int set_up(void **state) {
+    saved *s = calloc(1, sizeof *s);
+    if (!s) return -1;
+    fixture_make(&s->fixture, 2, NULL);
+    s->bytes = fixture_save(&s->fixture, &s->size);
+    *state = s;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    saved *s = *state;
+    fixture_free(&s->fixture);
+    free(s->bytes);
+    free(s);
+    return 0;
+}
+
+static uint64_t next_random(uint64_t *seed) { // splitmix64
+    uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
+static enf_status open_copy(const unsigned char *bytes, size_t size, enf_error *error) {
+    unsigned char *copy = malloc(size ? size : 1);
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    enf_world *world;
+    enf_status status = enf_world_open_memory(&world, copy, size, NULL, error);
+    assert_true((status == ENF_OK) == (world != NULL));
+    enf_world_close(world);
+    free(copy);
+    return status;
+}
+
+static enf_file_section *section_of(unsigned char *file, const char *tag) {
+    enf_file_header *header = (void *)file;
+    enf_file_section *sections = (void *)(file + header->table_offset);
+    for (uint32_t i = 0; i < header->section_count; i++) {
+        if (strncmp(sections[i].tag, tag, 8) == 0) return &sections[i];
+    }
+    fail_msg("no section %s", tag);
+    return NULL;
+}
+
+static void every_array_comes_back_as_it_was(void **state) {
+    saved *s = *state;
+    enf_image image;
+    enf_file_view view;
+    enf_error error = {0};
+    assert_int_equal(enf_image_make(&image, &s->fixture.build, "{}", &error), ENF_OK);
+    assert_int_equal(enf_file_read(&view, s->bytes, s->size, false, &error), ENF_OK);
+    int compared = 0;
+    for (int i = 0; i < enf_section_spec_count; i++) {
+        const enf_section_spec *spec = &enf_section_specs[i];
+        if (strcmp(spec->tag, "STRINGS") == 0 || strcmp(spec->tag, "PROVEN") == 0 ||
+            strcmp(spec->tag, "LEAK") == 0)
+            continue;
+        int64_t count = enf_view_count(&view, spec->dimension);
+        if (strcmp(spec->tag, "GROUP") && strcmp(spec->tag, "MATERIAL"))
+            assert_memory_equal(enf_view_array(&view, spec), enf_view_array(&image.view, spec),
+                                (size_t)(count + spec->extra) * spec->element_size);
+        assert_int_equal(count, enf_view_count(&image.view, spec->dimension));
+        compared++;
+    }
+    assert_true(compared > 50);
+    assert_true(view.has_exact && view.has_geometry);
+    assert_int_equal(view.point_count, 27);
+    assert_int_equal(view.tetrahedron_count, 48);
+    assert_int_equal(view.fine_count, 49);
+    assert_int_equal(view.box_count, 95);
+    enf_image_free(&image);
+}
+
+static void names_and_options_come_back(void **state) {
+    saved *s = *state;
+    enf_world *world;
+    assert_int_equal(enf_world_open_memory(&world, s->bytes, s->size, NULL, NULL), ENF_OK);
+    enf_world_info info;
+    enf_world_get_info(world, &info);
+    assert_string_equal(info.options, "{\"stop\":\"auto\"}");
+    assert_string_equal(enf_world_string(world, enf_world_file(world)->material_names[0]), "stone");
+    assert_string_equal(enf_world_string(world, enf_world_file(world)->group_names[0]), "");
+    assert_string_equal(enf_world_string(world, UINT32_MAX), "");
+    enf_world_close(world);
+}
+
+static void the_same_world_gives_the_same_bytes(void **state) {
+    saved *s = *state;
+    size_t size;
+    fixture again;
+    fixture_make(&again, 2, NULL);
+    again.build.seconds = 12.5; // times and memory are not in the file
+    again.build.peak_bytes = 77;
+    unsigned char *bytes = fixture_save(&again, &size);
+    assert_int_equal(size, s->size);
+    assert_memory_equal(bytes, s->bytes, size);
+    free(bytes);
+    fixture_free(&again);
+}
+
+static void sections_are_aligned_and_padding_is_zero(void **state) {
+    saved *s = *state;
+    const enf_file_header *header = (const void *)s->bytes;
+    const enf_file_section *sections = (const void *)(s->bytes + header->table_offset);
+    uint64_t end = header->table_offset + header->section_count * sizeof *sections;
+    for (uint32_t i = 0; i < header->section_count; i++) {
+        assert_int_equal(sections[i].offset % ENF_FILE_ALIGNMENT, 0);
+        for (; end < sections[i].offset; end++) assert_int_equal(s->bytes[end], 0);
+        end = sections[i].offset + sections[i].size;
+    }
+    assert_int_equal(end, s->size);
+}
+
+static void portals_face_the_cell_they_lead_from(void **state) {
+    (void)state;
+    const enf_frame frames[] = {{0.25, {0, 1, 2}, {1, 1, 1}, 1},
+                                {2, {1, 2, 0}, {-1, 1, -1}, 1},
+                                {1, {0, 1, 2}, {1, -1, 1}, -1},
+                                {1, {1, 0, 2}, {1, 1, 1}, -1}};
+    for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
+        fixture f;
+        enf_image image;
+        fixture_make(&f, 4, &frames[i]);
+        assert_int_equal(enf_image_make(&image, &f.build, NULL, NULL), ENF_OK);
+        const enf_file_view *view = &image.view;
+        assert_int_equal(view->portal_count, 2);
+        for (int32_t p = 0; p < 2; p++) {
+            const enf_file_portal *portal = &view->portals[p];
+            assert_int_equal(portal->from, p);
+            const enf_file_cell *from = &view->cells[portal->from];
+            double middle[3];
+            for (int a = 0; a < 3; a++) middle[a] = (from->box_min[a] + from->box_max[a]) / 2;
+            assert_int_equal(portal->polygon_count, 16);
+            for (int32_t k = 0; k < portal->polygon_count; k++) {
+                const enf_file_portal_polygon *polygon = &view->portal_polygons[portal->polygon_first + k];
+                const double(*v)[3] = view->portal_vertices + polygon->vertex_first;
+                double side = polygon->plane[3], turn = 0;
+                for (int a = 0; a < 3; a++) {
+                    int b = (a + 1) % 3, c = (a + 2) % 3;
+                    side += polygon->plane[a] * middle[a];
+                    turn += polygon->plane[a] * ((v[1][b] - v[0][b]) * (v[2][c] - v[0][c]) -
+                                                 (v[1][c] - v[0][c]) * (v[2][b] - v[0][b]));
+                }
+                assert_true(side > 0);
+                assert_true(turn > 0); // counter-clockwise seen from where the plane is positive
+                assert_true(turn / 2 > 0.999 * polygon->area && turn / 2 < 1.001 * polygon->area);
+            }
+        }
+        enf_image_free(&image);
+        fixture_free(&f);
+    }
+}
+
+static void triangles_keep_the_inputs_corners_and_cells_list_what_they_see(void **state) {
+    saved *s = *state;
+    enf_file_view view;
+    assert_int_equal(enf_file_read(&view, s->bytes, s->size, false, NULL), ENF_OK);
+    assert_int_equal(view.triangle_count, 8 + 2); // the wall, the detail
+    for (int32_t i = 0; i < 8; i++) {
+        assert_int_equal(view.triangles[i].mesh_polygon, i);
+        assert_int_equal(view.triangles[i].cell, -1);
+        const enf_soup *soup = &s->fixture.build.soup;
+        for (int k = 0; k < 3; k++)
+            assert_int_equal(view.triangles[i].point[k], soup->corner_point[soup->polygon_corner[i] + k]);
+    }
+    assert_int_equal(view.triangles[8].mesh_polygon, -1);
+    assert_int_equal(view.triangles[8].cell, 0);
+    for (int32_t c = 0; c < view.cell_count; c++) {
+        int detail = 0;
+        for (int64_t k = 0; k < view.cells[c].triangle_count; k++) {
+            int32_t triangle = view.cell_triangles[view.cells[c].triangle_first + k];
+            if (k) assert_true(triangle > view.cell_triangles[view.cells[c].triangle_first + k - 1]);
+            detail += triangle >= 8;
+        }
+        assert_int_equal(detail, 2); // it reaches to the portal, so both cells hold it
+    }
+    double volume = view.cells[0].volume + view.cells[1].volume;
+    assert_true(volume > 3.999 && volume < 4.001); // half of (2 * 4 steps * 1/4)^3
+}
+
+/// Bytes of padding between sections mean nothing; any other change must be noticed.
+static void every_changed_byte_is_noticed(void **state) {
+    saved *s = *state;
+    enf_file_view view;
+    assert_int_equal(enf_file_read(&view, s->bytes, s->size, false, NULL), ENF_OK);
+    unsigned char *copy = malloc(s->size), *covered = calloc(s->size, 1);
+    assert_non_null(copy);
+    assert_non_null(covered);
+    uint64_t table_end = view.header->table_offset + view.header->section_count * sizeof *view.sections;
+    memset(covered, 1, table_end);
+    for (uint32_t i = 0; i < view.header->section_count; i++)
+        memset(covered + view.sections[i].offset, 1, view.sections[i].size);
+    memcpy(copy, s->bytes, s->size);
+    for (size_t i = 0; i < s->size; i++) {
+        copy[i] ^= (unsigned char)(1u << i % 8);
+        enf_world *world;
+        enf_error error = {0};
+        enf_status status = enf_world_open_memory(&world, copy, s->size, NULL, &error);
+        // A newer minor version would open; its checksum tells that it is damage.
+        assert_int_equal(status, covered[i] ? ENF_BAD_INPUT : ENF_OK);
+        if (status) assert_true(error.text[0] != 0);
+        enf_world_close(world);
+        copy[i] = s->bytes[i];
+    }
+    free(copy);
+    free(covered);
+}
+
+static void every_truncation_is_refused(void **state) {
+    saved *s = *state;
+    enf_error error;
+    for (size_t size = 0; size < s->size; size += size < 4096 ? 1 : 37)
+        assert_int_equal(open_copy(s->bytes, size, &error), ENF_BAD_INPUT);
+    assert_int_equal(open_copy(s->bytes, s->size, &error), ENF_OK);
+}
+
+static void truncation_says_so(void **state) {
+    saved *s = *state;
+    enf_error error;
+    assert_int_equal(open_copy(s->bytes, s->size - 1, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, "incomplete"));
+    assert_int_equal(open_copy((const unsigned char *)"v 0 0 0\n", 8, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, "not a world file"));
+}
+
+static void newer_minor_versions_open_and_newer_major_ones_do_not(void **state) {
+    saved *s = *state;
+    enf_file_header *header = (void *)s->bytes;
+    enf_error error;
+    header->minor = 9;
+    fixture_fix_checksums(s->bytes);
+    assert_int_equal(open_copy(s->bytes, s->size, &error), ENF_OK);
+    header->major = ENF_FILE_MAJOR + 1;
+    fixture_fix_checksums(s->bytes);
+    assert_int_equal(open_copy(s->bytes, s->size, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, "newer program"));
+    header->major = ENF_FILE_MAJOR;
+    header->minor = ENF_FILE_MINOR;
+    fixture_fix_checksums(s->bytes);
+}
+
+static void unknown_sections_are_skipped_unless_they_must_be_known(void **state) {
+    saved *s = *state;
+    enf_error error;
+    unsigned char *copy = malloc(s->size);
+    assert_non_null(copy);
+    memcpy(copy, s->bytes, s->size);
+    // Renaming one geometry section breaks the part; renaming all of them drops it.
+    memcpy(section_of(copy, "RNORMAL")->tag, "FUTURE\0", 8);
+    fixture_fix_checksums(copy);
+    assert_int_equal(open_copy(copy, s->size, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, "RNORMAL is missing"));
+    for (int i = 0; i < enf_section_spec_count; i++) {
+        const enf_section_spec *spec = &enf_section_specs[i];
+        if (spec->part != ENF_PART_GEOMETRY || strcmp(spec->tag, "RNORMAL") == 0) continue;
+        enf_file_section *section = section_of(copy, spec->tag);
+        section->tag[0] = (char)('a' + i % 26);
+    }
+    fixture_fix_checksums(copy);
+    assert_int_equal(open_copy(copy, s->size, &error), ENF_OK);
+    section_of(copy, "FUTURE")->flags = ENF_FILE_MUST_KNOW;
+    fixture_fix_checksums(copy);
+    assert_int_equal(open_copy(copy, s->size, &error), ENF_BAD_INPUT);
+    free(copy);
+}
+
+static void hostile_table_entries_are_refused(void **state) {
+    saved *s = *state;
+    const uint64_t values[] = {1,
+                               8,
+                               15,
+                               0x7fffffff,
+                               UINT64_C(0x80000000),
+                               UINT64_C(1) << 60,
+                               UINT64_C(1) << 61,
+                               UINT64_MAX - 15,
+                               UINT64_MAX};
+    unsigned char *copy = malloc(s->size);
+    assert_non_null(copy);
+    memcpy(copy, s->bytes, s->size);
+    enf_file_header *header = (void *)copy;
+    enf_file_section *sections = (void *)(copy + header->table_offset);
+    for (uint32_t i = 0; i < header->section_count; i++) {
+        enf_file_section good = sections[i];
+        uint64_t *const fields[] = {&sections[i].offset, &sections[i].size, &sections[i].count};
+        for (int field = 0; field < 3; field++) {
+            for (size_t v = 0; v < sizeof values / sizeof *values; v++) {
+                if (*fields[field] == values[v]) continue;
+                *fields[field] = values[v];
+                enf_file_view view;
+                uint64_t table_checksum = header->table_checksum, header_checksum = header->header_checksum;
+                header->table_checksum = enf_hash64(sections, header->section_count * sizeof *sections, 0);
+                header->header_checksum = enf_hash64(header, offsetof(enf_file_header, header_checksum), 0);
+                assert_int_equal(enf_file_read(&view, copy, s->size, true, NULL), ENF_BAD_INPUT);
+                header->table_checksum = table_checksum;
+                header->header_checksum = header_checksum;
+                LLVMFuzzerTestOneInput(copy, s->size); // repairs the table's checksum
+                sections[i] = good;
+            }
+        }
+        // Size and count that agree with each other but not with the rest of the world.
+        sections[i].count += 1;
+        sections[i].size += sections[i].element_size;
+        LLVMFuzzerTestOneInput(copy, s->size);
+        sections[i].offset = 0;
+        LLVMFuzzerTestOneInput(copy, s->size);
+        sections[i] = good;
+    }
+    free(copy);
+}
+
+/// Random words of random sections become numbers that hurt, with correct checksums. The world opens or not;
+/// if it does, everything in it can be used.
+static void hostile_numbers_never_crash(void **state) {
+    saved *s = *state;
+    uint64_t seed = 20261122;
+    print_message("seed %llu\n", (unsigned long long)seed);
+    unsigned char *copy = malloc(s->size);
+    assert_non_null(copy);
+    memcpy(copy, s->bytes, s->size);
+    const enf_file_header *header = (const void *)copy;
+    const enf_file_section *sections = (const void *)(copy + header->table_offset);
+    int refused = 0, opened = 0;
+    for (uint32_t i = 0; i < header->section_count; i++) {
+        for (int round = 0; round < 60 && sections[i].size >= 4; round++) {
+            const uint32_t nasty[] = {0,
+                                      1,
+                                      UINT32_MAX,
+                                      UINT32_MAX - 1,
+                                      0x7fffffff,
+                                      0x80000000,
+                                      0x7ff00000,
+                                      0x7ff80001,
+                                      0xfff00000,
+                                      0x7fc00000,
+                                      (uint32_t)next_random(&seed),
+                                      27,
+                                      48,
+                                      49};
+            size_t word = next_random(&seed) % (sections[i].size / 4);
+            unsigned char *at = copy + sections[i].offset + 4 * word;
+            memcpy(at, &nasty[next_random(&seed) % (sizeof nasty / sizeof *nasty)], 4);
+            LLVMFuzzerTestOneInput(copy, s->size); // the second opening skips the section's checksum
+            enf_file_view view;
+            if (enf_file_read(&view, copy, s->size, true, NULL))
+                refused++;
+            else
+                opened++;
+            memcpy(at, s->bytes + (at - copy), 4);
+        }
+    }
+    assert_true(refused > 500); // the checks behind the checksums do work
+    assert_true(opened > 100);
+    free(copy);
+}
+
+static void expect_refusal(saved *s, const char *tag, size_t offset, int32_t value) {
+    unsigned char *copy = malloc(s->size);
+    assert_non_null(copy);
+    memcpy(copy, s->bytes, s->size);
+    memcpy(copy + section_of(copy, tag)->offset + offset, &value, sizeof value);
+    fixture_fix_checksums(copy);
+    enf_error error;
+    assert_int_equal(open_copy(copy, s->size, &error), ENF_BAD_INPUT);
+    if (!strstr(error.text, tag)) fail_msg("%s: %s", tag, error.text);
+    free(copy);
+}
+
+static void each_kind_of_bad_index_is_named(void **state) {
+    saved *s = *state;
+    expect_refusal(s, "TET", 0, 27);
+    expect_refusal(s, "TET", 0, -1);
+    expect_refusal(s, "TETNEXT", 4, -2);
+    expect_refusal(s, "TETROOT", 4, 0);        // a second way to the node
+    expect_refusal(s, "TETROOT", 4, -51);      // no such fine cell
+    expect_refusal(s, "NODCHILD", 0, 0);       // a node that is its own child
+    expect_refusal(s, "BOX", 24, 0);           // a walk that would not go on
+    expect_refusal(s, "BOX", 0, 0x7fc00000);   // NaN
+    expect_refusal(s, "POINT", 4, 0x7ff80000); // NaN
+    expect_refusal(s, "PLANE", 8, -4);
+    expect_refusal(s, "FACEOFF", 8, 1 << 20);
+    expect_refusal(s, "FACEOFF", 0, 1);
+    expect_refusal(s, "FINEFACE", 4, -1);
+    expect_refusal(s, "FACESIDE", 0, 2);
+    expect_refusal(s, "FACECORN", 0, 27);
+    expect_refusal(s, "PORTAL", 0, 1); // its twin no longer leads back
+    expect_refusal(s, "PORTPOLY", 44, 2);
+    expect_refusal(s, "CELL", 76, 2);
+    expect_refusal(s, "CELLPORT", 0, 2);
+    expect_refusal(s, "CELL", 68, 1); // portal 1 leads out of another cell
+    expect_refusal(s, "REGION", 28, 3);
+    expect_refusal(s, "TRIANGLE", 0, 1 << 20);
+    expect_refusal(s, "MATERIAL", 0, 1000); // beyond the strings
+}
+
+static size_t files_in_here(void) {
+    FILE *pipe = popen("ls -A | wc -l", "r");
+    size_t count = 0;
+    assert_non_null(pipe);
+    assert_int_equal(fscanf(pipe, "%zu", &count), 1);
+    pclose(pipe);
+    return count;
+}
+
+static void failing_to_write_leaves_nothing_behind(void **state) {
+    saved *s = *state;
+    char folder[] = "format-XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(chdir(folder), 0);
+    const enf_build *build = &s->fixture.build;
+    enf_error error = {0};
+    assert_int_equal(enf_build_write(build, NULL, "no-such-folder/world.enf", &error), ENF_NO_RESOURCES);
+    assert_non_null(strstr(error.text, "no-such-folder/world.enf"));
+    assert_int_equal(enf_build_write(build, NULL, ".", &error), ENF_NO_RESOURCES);
+    assert_int_equal(enf_build_write(build, NULL, "", &error), ENF_NO_RESOURCES);
+    if (access("/dev/full", W_OK) == 0) {
+        assert_int_equal(enf_build_write(build, NULL, "/dev/full", &error), ENF_NO_RESOURCES);
+        struct stat about;
+        assert_int_equal(stat("/dev/full", &about), 0);
+        assert_true(S_ISCHR(about.st_mode)); // still the device
+    }
+    assert_int_equal(mkdir("locked", 0555), 0);
+    if (access("locked", W_OK) != 0)
+        assert_int_equal(enf_build_write(build, NULL, "locked/world.enf", &error), ENF_NO_RESOURCES);
+    assert_int_equal(rmdir("locked"), 0); // and so it is empty
+    assert_int_equal(files_in_here(), 0);
+    assert_int_equal(chdir(".."), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+static void an_old_file_is_replaced_as_a_whole(void **state) {
+    saved *s = *state;
+    char folder[] = "format-XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(chdir(folder), 0);
+    FILE *old = fopen("world.enf", "w");
+    fputs("something older", old);
+    fclose(old);
+    assert_int_equal(symlink("world.enf", "link.enf"), 0);
+    enf_error error = {0};
+    assert_int_equal(enf_build_write(&s->fixture.build, "{\"stop\":\"auto\"}", "link.enf", &error), ENF_OK);
+    size_t size;
+    unsigned char *bytes = fixture_read_file("world.enf", &size);
+    assert_int_equal(size, s->size);
+    assert_memory_equal(bytes, s->bytes, size);
+    free(bytes);
+    assert_int_equal(files_in_here(), 2);
+    enf_world *world;
+    assert_int_equal(enf_world_open_path(&world, "link.enf", NULL, &error), ENF_OK);
+    enf_world_close(world);
+    assert_int_equal(remove("link.enf") + remove("world.enf"), 0);
+    assert_int_equal(chdir(".."), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+static void unreadable_paths_are_told_from_bad_files(void **state) {
+    (void)state;
+    enf_world *world;
+    enf_error error;
+    assert_int_equal(enf_world_open_path(&world, "no-such-file.enf", NULL, &error), ENF_NO_RESOURCES);
+    assert_non_null(strstr(error.text, "no-such-file.enf"));
+    assert_int_equal(enf_world_open_path(&world, ".", NULL, &error), ENF_NO_RESOURCES);
+    assert_int_equal(enf_world_open_path(&world, "/dev/null", NULL, &error), ENF_NO_RESOURCES);
+    char path[] = "empty-XXXXXX";
+    int file = mkstemp(path);
+    assert_true(file >= 0);
+    close(file);
+    assert_int_equal(enf_world_open_path(&world, path, NULL, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, path));
+    assert_null(world);
+    remove(path);
+}
+
+static void misaligned_memory_is_refused(void **state) {
+    saved *s = *state;
+    unsigned char *copy = malloc(s->size + 1);
+    assert_non_null(copy);
+    memcpy(copy + 1, s->bytes, s->size);
+    enf_world *world;
+    assert_int_equal(enf_world_open_memory(&world, copy + 1, s->size, NULL, NULL), ENF_BAD_USAGE);
+    free(copy);
+}
+
+static void a_broken_build_is_not_written(void **state) {
+    (void)state;
+    fixture f;
+    fixture_make(&f, 2, NULL);
+    f.build.complex.face_facet[3] = 1 << 20;
+    enf_error error = {0};
+    assert_int_equal(enf_build_write(&f.build, NULL, "never.enf", &error), ENF_CHECK_FAILED);
+    assert_int_not_equal(access("never.enf", F_OK), 0);
+    fixture_free(&f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_array_comes_back_as_it_was),
+        cmocka_unit_test(names_and_options_come_back),
+        cmocka_unit_test(the_same_world_gives_the_same_bytes),
+        cmocka_unit_test(sections_are_aligned_and_padding_is_zero),
+        cmocka_unit_test(portals_face_the_cell_they_lead_from),
+        cmocka_unit_test(triangles_keep_the_inputs_corners_and_cells_list_what_they_see),
+        cmocka_unit_test(every_changed_byte_is_noticed),
+        cmocka_unit_test(every_truncation_is_refused),
+        cmocka_unit_test(truncation_says_so),
+        cmocka_unit_test(newer_minor_versions_open_and_newer_major_ones_do_not),
+        cmocka_unit_test(unknown_sections_are_skipped_unless_they_must_be_known),
+        cmocka_unit_test(hostile_table_entries_are_refused),
+        cmocka_unit_test(hostile_numbers_never_crash),
+        cmocka_unit_test(each_kind_of_bad_index_is_named),
+        cmocka_unit_test(failing_to_write_leaves_nothing_behind),
+        cmocka_unit_test(an_old_file_is_replaced_as_a_whole),
+        cmocka_unit_test(unreadable_paths_are_told_from_bad_files),
+        cmocka_unit_test(misaligned_memory_is_refused),
+        cmocka_unit_test(a_broken_build_is_not_written),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
