@@ -64,7 +64,8 @@ static void print_leak(const cli_job *job, const char *path, FILE *out) {
 
 static void warn_of_leak(const cli_job *job, const char *path) {
     const enf_regions *regions = &job->build.regions;
-    const double *at = &job->build.soup.spawns[3 * regions->leak_spawn];
+    double at[3];
+    enf_frame_to_world(&job->build.mesh.frame, &job->build.mesh.spawns[3 * regions->leak_spawn], at);
     fprintf(stderr,
             "warning: leak: from spawn point %" PRId32 " (%g %g %g) one can reach the outside of the world; ",
             regions->leak_spawn, at[0], at[1], at[2]);

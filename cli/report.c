@@ -105,7 +105,6 @@ static void put_stages(enf_json *json, const cli_job *job) {
         const enf_stage_report *stage = &job->build.stages[i];
         put_stage(json, stage->name, stage->seconds, stage->ran, stage->why);
     }
-    put_stage(json, "visibility", 0, false, "not asked for (--pvs none)");
     put_stage(json, "write", job->write_seconds, true, "");
     enf_json_end_array(json);
 }
@@ -189,35 +188,22 @@ static void print_stage(FILE *out, const char *name, double seconds, const char 
     fprintf(out, "%-14s %8.3f s  %s\n", name, seconds, what);
 }
 
-static void print_work(const cli_job *job, const cli_counts *counts, FILE *out) {
+static void print_more(const cli_job *job, const cli_counts *counts, FILE *out) {
     const enf_build *build = &job->build;
     const enf_mesh *mesh = &build->mesh;
-    uint64_t all = build->complex.predicates_filter + build->complex.predicates_exact;
-    fprintf(
-        out,
-        "  clean: %zu of %zu vertices and %zu polygons from %zu, grid step %g, moved at most %g; %zu welded, "
-        "%zu triangulated, %zu two-sided, %zu detail\n",
-        mesh->point_count, build->soup.point_count, mesh->polygon_count, build->soup.polygon_count,
-        mesh->frame.step, mesh->displacement_max, mesh->welded, mesh->triangulated, mesh->two_sided,
-        mesh->detail_count);
     fprintf(out,
-            "  split: %" PRId32 " of %" PRId32 " tetrahedra were cut, into %" PRId32
-            " fine cells in all; %.3f %% of %" PRIu64 " predicates needed exact arithmetic\n",
-            build->complex.tetrahedra_cut, build->complex.tetrahedron_count, build->complex.cell_count,
-            all ? 100.0 * (double)build->complex.predicates_exact / (double)all : 0.0, all);
+            "  clean: %zu vertices of %zu; grid step %g, points moved by at most %g; weld %g, plane "
+            "tolerance %g; "
+            "%zu two-sided and %zu detail polygons\n",
+            mesh->point_count, build->soup.point_count, mesh->frame.step, mesh->displacement_max, mesh->weld,
+            mesh->plane_tolerance, mesh->two_sided, mesh->detail_count);
     fprintf(out,
-            "  colour: %" PRId32 " regions, %" PRId64 " kept; %" PRId64 " fine cells kept, %" PRId64
-            " discarded; %" PRId64 " of %" PRId32 " spawn points in cells\n",
-            build->regions.region_count, counts->regions_kept, counts->fine_active, counts->fine_discarded,
-            counts->spawns_in_cells, build->regions.spawn_count);
-    fprintf(out, "  decimate: %zu collapses by %s, %zu weights computed; the next would weigh %g\n",
-            build->decimation.collapse_count, enf_heuristic_name(job->options.heuristic),
-            build->decimation.evaluations, build->decimation.next_weight);
-    fprintf(out,
-            "  portals: %" PRId32 " in %" PRId32 " polygons, merged from %" PRId32 " pieces; %" PRId32
-            " slivers dropped\n",
-            build->portals.opening_count, build->portals.polygons.count, build->portals.pieces_merged,
-            build->portals.slivers);
+            "  colour: %" PRId64 " fine cells kept, %" PRId64 " discarded; %" PRId64 " of %" PRId32
+            " spawn points in cells\n",
+            counts->fine_active, counts->fine_discarded, counts->spawns_in_cells, build->regions.spawn_count);
+    fprintf(out, "  decimate: by %s, stop %s; the next collapse would weigh %g\n",
+            enf_heuristic_name(job->options.heuristic), job->settings->stop, build->decimation.next_weight);
+    fprintf(out, "  portals: %" PRId32 " slivers dropped\n", build->portals.slivers);
 }
 
 void cli_report_verbose(const cli_job *job, FILE *out) {
@@ -234,7 +220,6 @@ void cli_report_verbose(const cli_job *job, FILE *out) {
         snprintf(what, sizeof what, "%s%s", stage->ran ? "" : "skipped: ", stage->why);
         print_stage(out, stage->name, stage->seconds, what);
     }
-    print_stage(out, "visibility", 0, "skipped: not asked for (--pvs none)");
     print_stage(out, "write", job->write_seconds, "");
-    print_work(job, &counts, out);
+    print_more(job, &counts, out);
 }

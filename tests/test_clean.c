@@ -3,6 +3,7 @@
 // accounted for.
 #include "base/exact.h"
 #include "build/clean.h"
+#include "build/weld.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -65,6 +66,7 @@ static void add_random_world(enf_soup *soup, uint64_t *seed, int size) {
                 at[k][a] = (double)(next_random(seed) % 10) / (next_random(seed) % 4 ? 1 : 3);
         if (next_random(seed) % 9 == 0) at[0][1] = NAN;
         add_polygon(soup, count, (const double(*)[3])at, "chaos");
+        if (next_random(seed) % 3 == 0) add_polygon(soup, count, (const double(*)[3])at, "again");
     }
 }
 
@@ -555,6 +557,35 @@ static void welding_agrees_with_the_plain_definition(void **state) {
     }
 }
 
+static void each_site_joins_the_first_representative_in_reach(void **state) {
+    (void)state;
+    enum { COUNT = 600 };
+    uint64_t seed = 17;
+    for (int round = 0; round < 40; round++) {
+        enf_site sites[COUNT];
+        int32_t joined_to[COUNT];
+        double distance = 1 + (double)(next_random(&seed) % 400) / 2;
+        for (int i = 0; i < COUNT; i++) {
+            sites[i].id = i;
+            for (int a = 0; a < 3; a++)
+                sites[i].at[a] = (double)(next_random(&seed) % (round % 2 ? 1000 : 100)) - 500;
+        }
+        enf_sites_sort(sites, COUNT);
+        int32_t group_of[COUNT];
+        size_t count = enf_sites_unite(sites, COUNT, group_of);
+        assert_int_equal(enf_sites_weld(sites, count, distance, joined_to, NULL), ENF_OK);
+        for (size_t i = 0; i < count; i++) {
+            size_t first = i;
+            for (size_t j = 0; j < i && first == i; j++) {
+                double sum = 0;
+                for (int a = 0; a < 3; a++) sum += pow(sites[i].at[a] - sites[j].at[a], 2);
+                if (joined_to[j] == (int32_t)j && sum <= distance * distance) first = j;
+            }
+            assert_int_equal(joined_to[i], first);
+        }
+    }
+}
+
 static void the_plane_tolerance_recovers_axis_parallel_planes(void **state) {
     (void)state;
     enf_soup soup = {0};
@@ -652,6 +683,15 @@ static void the_order_of_the_input_does_not_matter(void **state) {
     }
 }
 
+static void reverse_polygons(enf_soup *soup) {
+    for (size_t p = 0; p < soup->polygon_count; p++)
+        for (int64_t i = soup->polygon_corner[p], j = soup->polygon_corner[p + 1] - 1; i < j; i++, j--) {
+            int32_t swap = soup->corner_point[i];
+            soup->corner_point[i] = soup->corner_point[j];
+            soup->corner_point[j] = swap;
+        }
+}
+
 /// The world with axes permuted, mirrored and scaled by a power of two, compared in grid coordinates.
 static void check_transformed(const enf_soup *soup, const int axis[3], int mirror, int exponent) {
     enf_soup turned = {0};
@@ -663,6 +703,9 @@ static void check_transformed(const enf_soup *soup, const int axis[3], int mirro
             points[3 * p + a] = ldexp(
                 mirror >> a & 1 ? -soup->points[3 * p + axis[a]] : soup->points[3 * p + axis[a]], exponent);
     copy_soup(&turned, soup, NULL, NULL, points, NULL);
+    bool even = (axis[1] - axis[0] + 3) % 3 == 1;
+    if (even != (__builtin_popcount((unsigned)mirror) % 2 == 0))
+        reverse_polygons(&turned); // fronts stay fronts
     enf_soup original = {0};
     copy_soup(&original, soup, NULL, NULL, soup->points, NULL);
     assert_int_equal(enf_mesh_clean(&mesh, &original, NULL, NULL), ENF_OK);
@@ -670,10 +713,7 @@ static void check_transformed(const enf_soup *soup, const int axis[3], int mirro
     assert_int_equal(mesh.point_count, other.point_count);
     assert_memory_equal(mesh.points, other.points, mesh.point_count * 3 * sizeof *mesh.points);
     assert_true(other.frame.step == ldexp(mesh.frame.step, exponent));
-    bool even = (axis[1] - axis[0] + 3) % 3 == 1;
-    bool mirrored = even != (__builtin_popcount((unsigned)mirror) % 2 == 0);
-    // The same polygons, too, unless the world was mirrored: then their fronts are on the other side.
-    if (!mirrored) check_same(&mesh, &other);
+    check_same(&mesh, &other);
     enf_mesh_free(&mesh);
     enf_mesh_free(&other);
     enf_soup_free(&turned);
@@ -721,6 +761,22 @@ static void worlds_with_symmetric_marginals_get_a_canonical_frame_too(void **sta
         enf_mesh_free(&other);
         enf_soup_free(&turned);
     }
+    enf_soup_free(&soup);
+}
+
+static void symmetric_points_with_unsymmetric_polygons_get_a_canonical_frame_too(void **state) {
+    (void)state;
+    static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    // Three sides of a cube around the origin, one of them a triangle only.
+    const double side[][3] = {{-1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {1, -1, -1}},
+                 wall[][3] = {{-1, -1, -1}, {-1, -1, 1}, {-1, 1, 1}, {-1, 1, -1}},
+                 half[][3] = {{1, 1, 1}, {1, -1, 1}, {-1, 1, 1}};
+    enf_soup soup = {0};
+    add_polygon(&soup, 4, side, "");
+    add_polygon(&soup, 4, wall, "");
+    add_polygon(&soup, 3, half, "");
+    for (int transform = 0; transform < 48; transform++)
+        check_transformed(&soup, orders[transform / 8], transform % 8, 3);
     enf_soup_free(&soup);
 }
 
@@ -807,12 +863,14 @@ int main(void) {
         cmocka_unit_test(globs_match_object_group_or_both),
         cmocka_unit_test(points_weld_within_the_distance_and_no_further),
         cmocka_unit_test(welding_agrees_with_the_plain_definition),
+        cmocka_unit_test(each_site_joins_the_first_representative_in_reach),
         cmocka_unit_test(the_plane_tolerance_recovers_axis_parallel_planes),
         cmocka_unit_test(duplicates_go_and_twins_stay),
         cmocka_unit_test(every_polygon_is_kept_or_listed_or_detail),
         cmocka_unit_test(the_order_of_the_input_does_not_matter),
         cmocka_unit_test(right_angles_mirrors_and_powers_of_two_give_the_same_grid),
         cmocka_unit_test(worlds_with_symmetric_marginals_get_a_canonical_frame_too),
+        cmocka_unit_test(symmetric_points_with_unsymmetric_polygons_get_a_canonical_frame_too),
         cmocka_unit_test(spawn_points_follow_into_the_grid),
         cmocka_unit_test(quake_levels_come_through),
     };

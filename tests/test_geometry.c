@@ -17,7 +17,7 @@
 #include "build/loop.h"
 #include "oracle.h"
 
-enum { POINTS = 14, PLANES = 12, CROSSINGS = 10, SCENE_KINDS = 8 };
+enum { POINTS = 14, PLANES = 12, CROSSINGS = 10, SCENE_KINDS = 10 };
 
 static const uint64_t seed = 1122;
 
@@ -74,7 +74,9 @@ static void random_points(scene *s, uint64_t *state) {
             case 4: x = levels[k][between(state, 0, 2)]; break;                      // corners of boxes
             case 5: x = origin[k] + i * u[k] + j * v[k]; break;                      // all in one plane
             case 6: x = origin[k] + i * u[k] + j * v[k] + jitter; break;             // nearly
-            default: x = between(state, -(INT64_C(1) << 20), INT64_C(1) << 20) * 64; // few significant bits
+            case 7: x = between(state, -(INT64_C(1) << 20), INT64_C(1) << 20) * 64; break; // few significant bits
+            case 8: x = i * largest + between(state, -2, 2); break;                  // near a diagonal of the whole grid
+            default: x = k == 0 ? origin[0] : i * largest + between(state, -2, 2); break; // that in an axis plane
             }
             s->points[3 * p + k] = (double)clamp(x);
         }

@@ -238,7 +238,7 @@ static void the_summary_counts(void **state) {
     enf_world_get_info(o.world, &info);
     assert_int_equal(info.cells, 2);
     assert_int_equal(info.portals, 1);
-    assert_int_equal(info.portal_polygons, 4 / 2);
+    assert_int_equal(info.portal_polygons, 4);
     assert_int_equal(info.regions, 2);
     assert_int_equal(info.regions_kept, 1);
     assert_int_equal(info.regions_of_kind[ENF_WORLD_ROCK], 1);

@@ -10,6 +10,7 @@
 #include "build/split.h"
 #include "shim/shim.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,15 +106,17 @@ static enf_status connect(kitchen *k) {
 
 static enf_status colour(kitchen *k) {
     enf_build *build = k->build;
+    double crack = fmax(build->mesh.weld, build->mesh.plane_tolerance) / build->mesh.frame.step;
     enf_status status = enf_regions_colour(&build->regions, &build->complex, &build->mesh,
-                                           &k->arrangement.tets, k->options->keep, k->error);
+                                           &k->arrangement.tets, k->options->keep, crack, k->error);
     enf_arrangement_free(&k->arrangement);
     free(k->crossings);
     k->crossings = NULL;
     if (status != ENF_OK) return status;
     int32_t kept = 0;
     for (int32_t r = 0; r < build->regions.region_count; r++) kept += build->regions.kept[r];
-    say(k, "%d of %d regions kept", (int)kept, (int)build->regions.region_count);
+    say(k, "%d of %d regions kept, %d cracks sealed", (int)kept, (int)build->regions.region_count,
+        (int)build->regions.sealed);
     return ENF_OK;
 }
 

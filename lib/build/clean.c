@@ -3,7 +3,7 @@
 //   1 judge      polygons of excluded groups and with corners that are missing, not finite or beyond 1e150
 //   go;
 //                polygons of detail groups are set aside
-//   2 frame      the canonical axes and the grid step follow from the set of points in use (frame.c)
+//   2 frame      the canonical axes and the grid step follow from the points (and polygons) in use (frame.c)
 //   3 round      every point to the nearest grid point
 //   4 weld       points within `weld` of an earlier one, in grid order, join it (default 1e-9 of the diagonal
 //   of the
@@ -240,7 +240,8 @@ static size_t settle_sites(cleaner *c, enf_site *sites, size_t count, int32_t *s
         return 0;
     }
     for (size_t i = 0; i < count; i++) memcpy(&distinct[3 * i], sites[i].at, sizeof sites[i].at);
-    enf_frame_choose(&c->mesh->frame, distinct, count);
+    enf_frame_rings rings = {c->soup, c->cutting, c->cutting_count, c->final_of};
+    enf_frame_choose(&c->mesh->frame, distinct, count, &rings);
     free(distinct);
     round_to_grid(&c->mesh->frame, sites, count);
     count = unite(c, sites, count, scratch[0]);

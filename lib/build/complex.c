@@ -4,6 +4,7 @@
 #include "base/array.h"
 #include "build/loop.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,4 +62,30 @@ void enf_complex_loop_centre(const enf_complex *complex, const enf_loops *loops,
         for (int k = 0; k < 3; k++)
             centre[k] += complex->vertex_position[loops->corners[i].vertex][k] / count;
     }
+}
+
+double enf_complex_piece_width(const enf_complex *complex, int32_t piece) {
+    const enf_loops *pieces = &complex->pieces;
+    const enf_corner *corners = pieces->corners + pieces->offset[piece];
+    int64_t count = pieces->offset[piece + 1] - pieces->offset[piece];
+    double width = HUGE_VAL;
+    for (int64_t i = 0; i < count; i++) { // the narrowest strip has an edge on its side
+        const double *p = complex->vertex_position[corners[i].vertex];
+        const double *q = complex->vertex_position[corners[(i + 1) % count].vertex];
+        double u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+        double length = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), farthest = 0;
+        if (length == 0) continue; // shorter than a grid step
+        for (int64_t k = 2; k < count; k++) {
+            const double *r = complex->vertex_position[corners[(i + k) % count].vertex];
+            double v[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]}, square = 0;
+            for (int a = 0; a < 3; a++) {
+                int b = (a + 1) % 3, c = (a + 2) % 3;
+                double part = u[b] * v[c] - u[c] * v[b];
+                square += part * part;
+            }
+            farthest = fmax(farthest, sqrt(square) / length);
+        }
+        width = fmin(width, farthest);
+    }
+    return width == HUGE_VAL ? 0 : width;
 }

@@ -19,6 +19,13 @@
 
 #include "build/clean.h"
 
+/// What a piece is, where it is not the number of a cover.
+enum {
+    ENF_PIECE_OPEN = -1,
+    ENF_PIECE_SEALED =
+        -2, ///< a crack between two regions, narrower than the weld distance; counts as occluded
+};
+
 typedef struct enf_corner {
     int32_t vertex;
     int32_t edge_plane; ///< holds the edge from this corner to the next; never parallel to the loop's plane
@@ -83,7 +90,7 @@ typedef struct enf_complex {
 
     enf_loops pieces;
     int32_t (*piece_face)[2]; ///< the face behind, the face in front; -1: outside the hull
-    int32_t *piece_cover;     ///< -1: open; else a cover that the whole piece lies in
+    int32_t *piece_cover;     ///< a cover that the whole piece lies in, ENF_PIECE_OPEN or ENF_PIECE_SEALED
     size_t piece_capacity;
 
     int64_t *seen_offset; ///< cell_count + 1 offsets
@@ -104,6 +111,10 @@ double enf_complex_cell_volume(const enf_complex *complex, int32_t cell);
 
 /// Area vector of a piece, grid steps squared, pointing to the facet's front.
 void enf_complex_piece_area(const enf_complex *complex, int32_t piece, double area[3]);
+
+/// The least distance between two parallel lines in the piece's plane that have it between them, from rounded
+/// coordinates, grid steps.
+double enf_complex_piece_width(const enf_complex *complex, int32_t piece);
 
 /// The mean of a loop's corners: a point inside it, up to rounding.
 void enf_complex_loop_centre(const enf_complex *complex, const enf_loops *loops, int32_t loop,

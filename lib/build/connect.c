@@ -165,7 +165,8 @@ static bool add_overlap(const connect_all *all, connector *connector, connect_bl
     }
     for (size_t i = 0; i < connector->open_count; i++) {
         enf_loop loop = connector->open[i];
-        if (!add_piece(connector, block, connector->pool.corners + loop.first, loop.count, face, -1))
+        if (!add_piece(connector, block, connector->pool.corners + loop.first, loop.count, face,
+                       ENF_PIECE_OPEN))
             return false;
     }
     return !connector->pool.failed;
@@ -180,7 +181,7 @@ static bool add_pair(const connect_all *all, connector *connector, connect_block
     if (complex->facet_cover[facet] == complex->facet_cover[facet + 1] && (whole_behind || whole_front)) {
         const enf_corner *corners = complex->faces.corners + complex->faces.offset[base];
         int32_t count = (int32_t)(complex->faces.offset[base + 1] - complex->faces.offset[base]);
-        return add_piece(connector, block, corners, count, face, -1);
+        return add_piece(connector, block, corners, count, face, ENF_PIECE_OPEN);
     }
     enf_loop overlap = copy_loop(connector, &complex->faces, base, plane);
     if (!whole_behind && !whole_front) {

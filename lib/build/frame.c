@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Axes are ordered by extent, then by whole-number moments of the centred coordinate; they point to where the
 // odd moments are positive. What the moments leave open (worlds with symmetric marginals) is decided by the
-// smallest order-independent hash of the grid points over the frames still possible; equal hashes mean that
-// the set of points itself is symmetric, and then the input's axes are taken as they are.
+// smallest order-independent hash of the grid points over the frames still possible, and where these are
+// equal, too (the set of points is symmetric), of the polygons. If even the polygons are symmetric any of the
+// frames gives the same.
 #include "build/frame.h"
 
 #include "base/hash.h"
@@ -84,49 +85,42 @@ static double choose_step(const double low[3], const double high[3]) {
     return ldexp(1, exponent - 53 < DBL_MIN_EXP - DBL_MANT_DIG ? DBL_MIN_EXP - DBL_MANT_DIG : exponent - 53);
 }
 
-static uint64_t hash_in_frame(const enf_frame *frame, const double *points, size_t count) {
-    uint64_t sum = 0;
-    for (size_t i = 0; i < count; i++) {
-        uint64_t hash = 0;
-        for (int a = 0; a < 3; a++) {
-            double grid = frame->sign[a] * points[3 * i + frame->axis[a]] / frame->step + 0.0;
-            uint64_t bits;
-            memcpy(&bits, &grid, sizeof bits);
-            hash = enf_hash_mix(hash * 3 + bits);
-        }
-        sum += enf_hash_mix(hash);
+static uint64_t hash_point(const enf_frame *frame, const double *point) {
+    uint64_t hash = 0;
+    for (int a = 0; a < 3; a++) {
+        double grid = frame->sign[a] * point[frame->axis[a]] / frame->step + 0.0; // -0 becomes 0
+        uint64_t bits;
+        memcpy(&bits, &grid, sizeof bits);
+        hash = enf_hash_mix(hash * 3 + bits);
     }
+    return hash;
+}
+
+static uint64_t hash_points(const enf_frame *frame, const double *points, size_t count) {
+    uint64_t sum = 0;
+    for (size_t i = 0; i < count; i++) sum += enf_hash_mix(hash_point(frame, &points[3 * i]));
     return sum;
 }
 
-/// Tries every order and direction that the keys allow; the first of equals is the input's own.
-static void break_ties(enf_frame *frame, const axis_key keys[3], const double *points, size_t count) {
-    static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-    enf_frame candidates[48];
-    int candidate_count = 0;
-    for (int o = 0; o < 6; o++) {
-        const int *order = orders[o];
-        if (compare_axes(&keys[order[0]], &keys[order[1]]) > 0 ||
-            compare_axes(&keys[order[1]], &keys[order[2]]) > 0)
-            continue;
-        for (int mirror = 0; mirror < 8; mirror++) {
-            enf_frame candidate = {.step = frame->step};
-            bool allowed = true;
-            for (int a = 0; a < 3; a++) {
-                candidate.axis[a] = order[a];
-                candidate.sign[a] = mirror >> a & 1 ? -1 : 1;
-                allowed = allowed && candidate.sign[a] * keys[order[a]].sign >= 0;
-            }
-            if (allowed) candidates[candidate_count++] = candidate;
+/// Depends on each polygon's corners and on the way round, not on where its list begins.
+static uint64_t hash_rings(const enf_frame *frame, const double *points, const enf_frame_rings *rings) {
+    const enf_soup *soup = rings->soup;
+    uint64_t sum = 0;
+    for (size_t i = 0; i < rings->polygon_count; i++) {
+        int64_t first = soup->polygon_corner[rings->polygons[i]],
+                end = soup->polygon_corner[rings->polygons[i] + 1];
+        uint64_t ring = 0, before = 0;
+        for (int64_t k = first == end ? end : first - 1; k < end; k++) { // from the last corner once round
+            int32_t corner = soup->corner_point[k < first ? end - 1 : k];
+            uint64_t here = hash_point(frame, &points[3 * (size_t)rings->place_of[corner]]);
+            if (k >= first)
+                ring +=
+                    frame->handedness > 0 ? enf_hash_mix(before + 3 * here) : enf_hash_mix(here + 3 * before);
+            before = here;
         }
+        sum += enf_hash_mix(ring);
     }
-    int best = 0;
-    uint64_t best_hash = candidate_count > 1 ? hash_in_frame(&candidates[0], points, count) : 0;
-    for (int c = 1; c < candidate_count; c++) {
-        uint64_t hash = hash_in_frame(&candidates[c], points, count);
-        if (hash < best_hash) best = c, best_hash = hash;
-    }
-    *frame = candidates[best];
+    return sum;
 }
 
 /// +1 if the axes are an even permutation with an even number of mirrored ones, or neither.
@@ -135,14 +129,58 @@ static int find_handedness(const enf_frame *frame) {
     return (even ? 1 : -1) * frame->sign[0] * frame->sign[1] * frame->sign[2];
 }
 
-void enf_frame_choose(enf_frame *frame, const double *points, size_t count) {
+/// Lists every order and direction of the axes that the keys allow; the input's own comes first.
+static int list_candidates(double step, const axis_key keys[3], enf_frame candidates[48]) {
+    static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    int count = 0;
+    for (int o = 0; o < 6; o++) {
+        const int *order = orders[o];
+        if (compare_axes(&keys[order[0]], &keys[order[1]]) > 0 ||
+            compare_axes(&keys[order[1]], &keys[order[2]]) > 0)
+            continue;
+        for (int mirror = 0; mirror < 8; mirror++) {
+            enf_frame candidate = {.step = step};
+            bool allowed = true;
+            for (int a = 0; a < 3; a++) {
+                candidate.axis[a] = order[a];
+                candidate.sign[a] = mirror >> a & 1 ? -1 : 1;
+                allowed = allowed && candidate.sign[a] * keys[order[a]].sign >= 0;
+            }
+            candidate.handedness = find_handedness(&candidate);
+            if (allowed) candidates[count++] = candidate;
+        }
+    }
+    return count;
+}
+
+/// The candidate with the smallest hash of points, then of polygons, then the first.
+static void choose_candidate(enf_frame *frame, const enf_frame *candidates, int count, const double *points,
+                             size_t point_count, const enf_frame_rings *rings) {
+    uint64_t point_hash[48], least = UINT64_MAX;
+    int ties = 0;
+    for (int c = 0; c < count && count > 1; c++) {
+        point_hash[c] = hash_points(&candidates[c], points, point_count);
+        if (point_hash[c] < least) least = point_hash[c], ties = 0;
+        ties += point_hash[c] == least;
+    }
+    int best = -1;
+    uint64_t least_ring = 0;
+    for (int c = 0; c < count && count > 1; c++) {
+        if (point_hash[c] != least) continue;
+        uint64_t ring_hash = ties > 1 ? hash_rings(&candidates[c], points, rings) : 0;
+        if (best < 0 || ring_hash < least_ring) best = c, least_ring = ring_hash;
+    }
+    *frame = candidates[best < 0 ? 0 : best];
+}
+
+void enf_frame_choose(enf_frame *frame, const double *points, size_t count, const enf_frame_rings *rings) {
     double low[3], high[3];
     axis_key keys[3];
+    enf_frame candidates[48];
     find_bounds(points, count, low, high);
-    *frame = (enf_frame){.step = choose_step(low, high)};
     find_keys(points, count, low, high, keys);
-    break_ties(frame, keys, points, count);
-    frame->handedness = find_handedness(frame);
+    int candidate_count = list_candidates(choose_step(low, high), keys, candidates);
+    choose_candidate(frame, candidates, candidate_count, points, count, rings);
 }
 
 void enf_frame_to_world(const enf_frame *frame, const double grid[3], double world[3]) {

@@ -7,7 +7,17 @@
 
 #include "build/clean.h"
 
-/// `points`: xyz of `count` different points, |x| <= 1e150, in any order; count may be 0.
-void enf_frame_choose(enf_frame *frame, const double *points, size_t count);
+/// The polygons of a soup, as far as the choice of the frame needs them.
+typedef struct enf_frame_rings {
+    const enf_soup *soup;
+    const int32_t *polygons; ///< numbers of those that count
+    size_t polygon_count;
+    const int32_t
+        *place_of; ///< per soup point that they use: index into the points given to enf_frame_choose
+} enf_frame_rings;
+
+/// `points`: xyz of `count` different points, |x| <= 1e150, in any order; count may be 0. The polygons are
+/// only looked at where the set of points is symmetric.
+void enf_frame_choose(enf_frame *frame, const double *points, size_t count, const enf_frame_rings *rings);
 
 #endif

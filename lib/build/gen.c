@@ -29,7 +29,7 @@ static const entry entries[] = {
      enf_gen_furnished, false},
     {"office", "floors=F storeys of rooms=R rooms each, corridors, stairs, windows; detail=N splits every wall",
      enf_gen_office, true},
-    {"post", "a square post with four rooms around it", enf_gen_post, false},
+    {"post", "a square post with four rooms around it", enf_gen_post_world, false},
 };
 
 enum {

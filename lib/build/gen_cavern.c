@@ -4,6 +4,8 @@
 // three to each triangle of the plan; then all of it is tilted, so that no face is axis-aligned. The plan stands on a grid
 // and the tilt is a rotation by whole numbers (from the quaternion 10 + i - j + k): no rounding takes part, floor and
 // ceiling stay exactly flat.
+#include <math.h>
+
 #include "build/gen_world.h"
 
 enum {
@@ -19,7 +21,7 @@ static const double steps_per_unit = 40.0;  // of the plan
 static const double unit_of_tilt = 4096.0;  // the tilt stretches by 103, so a plan unit becomes 1.006 world units
 static const double tilt[3][3] = {{99, -22, -18}, {18, 99, -22}, {22, 18, 99}};
 static const double mouth_half = 21.0;      // degrees of a room's rim
-static const double degrees_per_point = 14.2; // of the rim
+static const double degrees_per_point = 13.5; // of the rim
 static const double dent = 0.07;            // of the radius
 static const double narrowing[SIDE_POINTS] = {0.70, 0.46, 0.38, 0.46, 0.70};
 static const uint64_t dent_seed = 1;
@@ -43,25 +45,18 @@ static const room rooms[ROOM_COUNT] = {
     {31.0, 15.0, 5.2, 0.11, 60, 2, {{3, 171}, {6, 274}}},
 };
 
-/// A corner of the plan: its points in the floor and in the ceiling.
-typedef struct post {
-    int32_t floor, ceiling;
-} post;
-
 /// Both ends of a passage: the corners of the mouth, clockwise one first.
 typedef struct passage {
-    post ends[2][2];
+    enf_gen_post ends[2][2];
     int end_count;
 } passage;
 
-static post add_post(enf_gen_world *world, double x, double y) {
-    double grid_x = enf_gen_round(x * steps_per_unit / 1000.0) * 1000.0;
-    double grid_y = enf_gen_round(y * steps_per_unit / 1000.0) * 1000.0;
-    return (post){enf_gen_point(world, grid_x, grid_y, 0), enf_gen_point(world, grid_x, grid_y, HEIGHT)};
+static enf_gen_post add_post(enf_gen_world *world, double x, double y) {
+    return enf_gen_plan_post(world, floor(x * steps_per_unit + 0.5), floor(y * steps_per_unit + 0.5), 0, HEIGHT);
 }
 
 // A point of the rim, dented at random.
-static post rim_post(enf_gen_world *world, const room *room, double degrees, uint64_t *state) {
+static enf_gen_post rim_post(enf_gen_world *world, const room *room, double degrees, uint64_t *state) {
     double sine, cosine, ignored, bulge;
     enf_gen_sine_cosine(degrees, &sine, &cosine);
     enf_gen_sine_cosine(2 * (degrees - room->axis), &ignored, &bulge);
@@ -69,25 +64,8 @@ static post rim_post(enf_gen_world *world, const room *room, double degrees, uin
     return add_post(world, room->x + radius * cosine, room->y + radius * sine);
 }
 
-// Walls along a row of posts, the air on their left.
-static void add_walls(enf_gen_world *world, const post *posts, int count) {
-    for (int i = 0; i + 1 < count; i++)
-        enf_gen_quad(world, posts[i + 1].floor, posts[i].floor, posts[i].ceiling, posts[i + 1].ceiling);
-}
-
-// Floor and ceiling of a part of the plan, its posts counter-clockwise.
-static void add_floor(enf_gen_world *world, const post *posts, int count) {
-    int32_t floor[MOUTHS_MAX * ARC_MAX], ceiling[MOUTHS_MAX * ARC_MAX];
-    for (int i = 0; i < count; i++) {
-        floor[i] = posts[i].floor;
-        ceiling[count - 1 - i] = posts[i].ceiling;
-    }
-    enf_gen_polygon(world, 2, 1, floor, (size_t)count);
-    enf_gen_polygon(world, 2, -1, ceiling, (size_t)count);
-}
-
 static void add_room(enf_gen_world *world, const room *room, passage passages[PASSAGE_COUNT], uint64_t *state) {
-    post posts[MOUTHS_MAX * ARC_MAX];
+    enf_gen_post posts[MOUTHS_MAX * ARC_MAX];
     int count = 0;
     for (int m = 0; m < room->mouth_count; m++) {
         int next = (m + 1) % room->mouth_count;
@@ -96,18 +74,18 @@ static void add_room(enf_gen_world *world, const room *room, passage passages[PA
         int stretches = (int)((to - from) / degrees_per_point + 0.5), first = count;
         for (int i = 0; i <= stretches && i < ARC_MAX; i++)
             posts[count++] = rim_post(world, room, from + (to - from) * i / stretches, state);
-        add_walls(world, posts + first, count - first);
+        enf_gen_plan_walls(world, posts + first, count - first);
         passage *left = &passages[room->mouths[m].passage], *right = &passages[room->mouths[next].passage];
         left->ends[left->end_count][1] = posts[first];
         right->ends[right->end_count][0] = posts[count - 1];
 
     }
     for (int m = 0; m < room->mouth_count; m++) passages[room->mouths[m].passage].end_count++;
-    add_floor(world, posts, count);
+    enf_gen_plan_floor(world, posts, count);
 }
 
 // The posts between the two ends of a passage's side, given its other side, which is its mirror image.
-static post side_post(enf_gen_world *world, const post side[2], const post other[2], int i) {
+static enf_gen_post side_post(enf_gen_world *world, const enf_gen_post side[2], const enf_gen_post other[2], int i) {
     double t = (i + 1) / (SIDE_POINTS + 1.0), at[2];
     for (int a = 0; a < 2; a++) {
         double from = world->points[side[0].floor][a], from_other = world->points[other[0].floor][a];
@@ -121,18 +99,18 @@ static post side_post(enf_gen_world *world, const post side[2], const post other
 
 static void add_passage(enf_gen_world *world, const passage *passage) {
     enum { COUNT = SIDE_POINTS + 2 };
-    post posts[2 * COUNT];
-    const post right[2] = {passage->ends[0][0], passage->ends[1][1]};
-    const post left[2] = {passage->ends[0][1], passage->ends[1][0]};
+    enf_gen_post posts[2 * COUNT];
+    const enf_gen_post right[2] = {passage->ends[0][0], passage->ends[1][1]};
+    const enf_gen_post left[2] = {passage->ends[0][1], passage->ends[1][0]};
     posts[0] = right[0], posts[COUNT - 1] = right[1];
     posts[COUNT] = left[1], posts[2 * COUNT - 1] = left[0];
     for (int i = 0; i < SIDE_POINTS; i++) {
         posts[1 + i] = side_post(world, right, left, i);
         posts[2 * COUNT - 2 - i] = side_post(world, left, right, i);
     }
-    add_walls(world, posts, COUNT);
-    add_walls(world, posts + COUNT, COUNT);
-    add_floor(world, posts, 2 * COUNT);
+    enf_gen_plan_walls(world, posts, COUNT);
+    enf_gen_plan_walls(world, posts + COUNT, COUNT);
+    enf_gen_plan_floor(world, posts, 2 * COUNT);
 }
 
 static void tilt_point(double point[3]) {

@@ -2,8 +2,6 @@
 // The four-room worlds of the thesis (4.3.1 - 4.3.3): four rooms in a ring whose walls do not line up, joined by
 // four short corridors as high as the rooms. The plan is a 4 x 4 grid per room; the fewest triangles use its
 // outline, the tessellated world all of it.
-#include <string.h>
-
 #include "build/gen_world.h"
 
 enum { ROOM_COUNT = 4, BREAKS = 5, LEVELS = 2, PLAIN_POINTS = 16 };
@@ -156,21 +154,13 @@ typedef struct distortion {
     double pull[8][3]; ///< by corner: bit 0 east, bit 1 north, bit 2 up
 } distortion;
 
-#ifdef TUNE
-#include <stdlib.h>
-static distortion distortions[ROOM_COUNT];
-static double SHRINK=1;
-static void tune(void){uint64_t s=strtoull(getenv("TS"),0,10);double A=atof(getenv("TA")),Q=atof(getenv("TP"));int n=atoi(getenv("TN"));SHRINK=atof(getenv("TK"));for(int r=0;r<4;r++){for(int a=0;a<3;a++){double u=enf_gen_random_unit(&s);distortions[r].degrees[a]=(double)(int)(A*(u>0?.5+u/2:-.5+u/2)*10)/10;}for(int k=0;k<n;k++){int c=enf_gen_random(&s)&7;for(int a=0;a<3;a++)distortions[r].pull[c][a]=(double)(int)(enf_gen_random_unit(&s)*Q*10)/10;}}
-if(getenv("TV"))for(int r=0;r<4;r++){fprintf(stderr,"{{%g,%g,%g},{",distortions[r].degrees[0],distortions[r].degrees[1],distortions[r].degrees[2]);for(int k=0;k<8;k++)if(distortions[r].pull[k][0]||distortions[r].pull[k][1])fprintf(stderr,"[%d]={%g,%g,%g},",k,distortions[r].pull[k][0],distortions[r].pull[k][1],distortions[r].pull[k][2]);fprintf(stderr,"}},\n");}}
-#else
-static const double SHRINK = 0.9;
+static const double shrink = 0.8; // about their middles, so that they stay apart
 static const distortion distortions[ROOM_COUNT] = {
-    {{7, -9, 11}, {[0] = {-0.9, -0.5, -0.4}, [5] = {0.3, -0.6, 0.7}, [6] = {-0.6, 0.2, 0.9}}},
-    {{-10, 6, -8}, {[1] = {0.8, -0.7, -0.5}, [3] = {0.9, 0.2, -0.6}, [4] = {-0.2, -0.9, 0.5}}},
-    {{9, 8, 13}, {[2] = {-0.2, 0.8, -0.7}, [7] = {0.9, 0.6, 0.5}, [5] = {0.6, -0.2, 0.6}}},
-    {{-6, -11, -9}, {[2] = {-0.8, 0.7, -0.3}, [4] = {-0.7, -0.3, 0.8}, [7] = {0.2, 0.9, 0.4}}},
+    {{3.6, -4.2, 3.2}, {[1] = {0.7, -0.4, -0.2}, [3] = {-0.2, -0.6, 0.8}}},
+    {{4.5, 4.1, 4.3}, {[0] = {0.6, 0.9, -0.6}, [5] = {0.2, -0.3, -0.1}}},
+    {{-4.1, 4.3, 2.8}, {[1] = {-0.7, 0.4, -0.9}, [7] = {0.4, 0.6, -0.4}}},
+    {{-3.9, -3.4, -3.1}, {[3] = {0.9, -0.4, -0.9}, [5] = {0.5, -0.4, -0.5}}},
 };
-#endif
 
 static void distort(const room *box, const distortion *how, double point[3]) {
     const double low[3] = {box->x[0], box->y[0], level[0]};
@@ -178,7 +168,7 @@ static void distort(const room *box, const distortion *how, double point[3]) {
     double matrix[3][3], offset[3], share[3];
     for (int a = 0; a < 3; a++) {
         share[a] = (point[a] - low[a]) / (high[a] - low[a]);
-        offset[a] = (point[a] - (low[a] + high[a]) / 2) * SHRINK;
+        offset[a] = (point[a] - (low[a] + high[a]) / 2) * shrink;
     }
     for (int i = 0; i < 8; i++) {
         double weight = (i & 1 ? share[0] : 1 - share[0]) * (i & 2 ? share[1] : 1 - share[1]) *
@@ -192,10 +182,7 @@ static void distort(const room *box, const distortion *how, double point[3]) {
 
 void enf_gen_four_rooms_distorted(enf_gen_world *world, const enf_gen_options *options) {
     enf_gen_four_rooms(world, options);
-#ifdef TUNE
-    tune();
-#endif
-    for (size_t i = 0; i < world->point_count; i++) { // the points stand room by room
+    for (size_t i = 0; i < world->point_count && !world->failed; i++) { // the points stand room by room
         size_t r = i / PLAIN_POINTS;
         distort(&rooms[r], &distortions[r], world->points[i]);
     }

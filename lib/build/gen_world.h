@@ -53,8 +53,21 @@ void enf_gen_polygon(enf_gen_world *world, int axis, int facing, const int32_t *
 /// A closed box, fronts outward.
 void enf_gen_box(enf_gen_world *world, const double low[3], const double high[3]);
 
-/// Four walls between two rings of `count` points, fronts inward: ring `a` is counter-clockwise seen from ring `b`.
+/// Walls between two rings of `count` points, fronts inward: ring `a` is counter-clockwise seen from ring `b`.
 void enf_gen_tube(enf_gen_world *world, const int32_t *a, const int32_t *b, size_t count);
+
+/// A corner of a plan: its points in the floor and in the ceiling.
+typedef struct enf_gen_post {
+    int32_t floor, ceiling;
+} enf_gen_post;
+
+enf_gen_post enf_gen_plan_post(enf_gen_world *world, double x, double y, double low, double high);
+
+/// Walls along a row of corners, the air on its left.
+void enf_gen_plan_walls(enf_gen_world *world, const enf_gen_post *posts, int count);
+
+/// Floor and ceiling over at most 64 corners, counter-clockwise seen from above.
+void enf_gen_plan_floor(enf_gen_world *world, const enf_gen_post *posts, int count);
 
 /// splitmix64 (Steele, Lea, Flood 2014): next number of the stream, and one in [-1, 1).
 uint64_t enf_gen_random(uint64_t *state);
@@ -78,7 +91,7 @@ void enf_gen_four_rooms_distorted(enf_gen_world *world, const enf_gen_options *o
 void enf_gen_cavern(enf_gen_world *world, const enf_gen_options *options);
 void enf_gen_furnished(enf_gen_world *world, const enf_gen_options *options);
 void enf_gen_office(enf_gen_world *world, const enf_gen_options *options);
-void enf_gen_post(enf_gen_world *world, const enf_gen_options *options);
+void enf_gen_post_world(enf_gen_world *world, const enf_gen_options *options);
 
 /// Puts scale, noise, rotation and translation into effect.
 void enf_gen_transform(enf_gen_world *world, const enf_gen_options *options);

@@ -44,11 +44,26 @@ static int square_axis(const double u[3], const double v[3]) {
     return -1;
 }
 
+/// The same without rounding (differences may need 54 bits).
+static void whole_spans(const enf_geometry *geometry, int32_t plane, int64_t u[3], int64_t v[3]) {
+    const int32_t *defined = geometry->planes[plane];
+    const double *p = geometry->points + 3 * (size_t)defined[0],
+                 *q = geometry->points + 3 * (size_t)defined[1];
+    for (int i = 0; i < 3; i++) {
+        u[i] = (int64_t)q[i] - (int64_t)p[i];
+        v[i] = defined[2] < 0 ? i == axis_of(defined[2])
+                              : (int64_t)geometry->points[3 * (size_t)defined[2] + (size_t)i] - (int64_t)p[i];
+    }
+}
+
 /// Planes square to an axis get the normal +1 or -1: exact, and small enough to keep crossings exact as well.
-static void set_square_plane(enf_plane_filter *filter, const double *p, int axis, const double u[3],
-                             const double v[3]) {
+static void set_square_plane(enf_geometry *geometry, int32_t plane, int axis) {
+    enf_plane_filter *filter = &geometry->filters[plane];
+    const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
     int j = (axis + 1) % 3, k = (axis + 2) % 3;
-    enf_int128 area = (enf_int128)u[j] * (enf_int128)v[k] - (enf_int128)u[k] * (enf_int128)v[j];
+    int64_t u[3], v[3];
+    whole_spans(geometry, plane, u, v);
+    enf_int128 area = (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j];
     double sign = area > 0 ? 1 : -1;
     for (int i = 0; i < 3; i++) filter->normal[i] = i == axis ? sign : 0;
     filter->offset = -sign * p[axis];
@@ -65,7 +80,7 @@ void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane) {
     plane_spans(geometry, plane, u, v);
     int axis = square_axis(u, v);
     if (axis >= 0) {
-        set_square_plane(filter, p, axis, u, v);
+        set_square_plane(geometry, plane, axis);
         return;
     }
     for (int i = 0; i < 3; i++) {
@@ -101,15 +116,9 @@ typedef struct exact_plane {
 } exact_plane;
 
 static void exact_plane_of(const enf_geometry *geometry, int32_t plane, exact_plane *out) {
-    const int32_t *defined = geometry->planes[plane];
-    const double *p = geometry->points + 3 * (size_t)defined[0],
-                 *q = geometry->points + 3 * (size_t)defined[1];
+    const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
     int64_t u[3], v[3];
-    for (int i = 0; i < 3; i++) {
-        u[i] = (int64_t)q[i] - (int64_t)p[i];
-        v[i] = defined[2] < 0 ? i == axis_of(defined[2])
-                              : (int64_t)geometry->points[3 * (size_t)defined[2] + (size_t)i] - (int64_t)p[i];
-    }
+    whole_spans(geometry, plane, u, v);
     out->offset.sign = out->offset.size = 0;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -262,15 +271,11 @@ static int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane) {
     }
     geometry->decided_exactly++;
     double third[3];
-    const double *q = geometry->points + 3 * (size_t)defined[1], *r = q;
-    if (defined[2] >= 0) {
-        r = geometry->points + 3 * (size_t)defined[2];
-    } else {
-        int axis = axis_of(defined[2]), step = p[axis] > 0 ? -1 : 1; // one step beyond 2^53 is no double
-        for (int i = 0; i < 3; i++) third[i] = i == axis ? p[i] + step : p[i];
-        return step * enf_points_orient(p, q, third, x);
-    }
-    return enf_points_orient(p, q, r, x);
+    const double *q = geometry->points + 3 * (size_t)defined[1];
+    if (defined[2] >= 0) return enf_points_orient(p, q, geometry->points + 3 * (size_t)defined[2], x);
+    int axis = axis_of(defined[2]), step = p[axis] > 0 ? -1 : 1; // one step beyond 2^53 is no double
+    for (int i = 0; i < 3; i++) third[i] = i == axis ? p[i] + step : p[i];
+    return step * enf_points_orient(p, q, third, x);
 }
 
 const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t vertex) {

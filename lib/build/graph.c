@@ -41,7 +41,8 @@ enf_status enf_graph_build(enf_graph *graph, const enf_complex *complex, const i
             if (node[0] < 0 && node[1] < 0) continue;
             if (pass == 1) {
                 memcpy(graph->piece_cell[count], node, sizeof node);
-                graph->piece_open[count] = complex->piece_cover[p] < 0 && node[0] >= 0 && node[1] >= 0;
+                graph->piece_open[count] =
+                    complex->piece_cover[p] == ENF_PIECE_OPEN && node[0] >= 0 && node[1] >= 0;
                 graph->piece_corner[count] = corners;
                 for (int64_t c = pieces->offset[p]; c < pieces->offset[p + 1]; c++) {
                     const double *at = complex->vertex_position[pieces->corners[c].vertex];

@@ -14,7 +14,7 @@ typedef struct enf_graph {
     int32_t (
         *piece_cell)[2]; ///< the cell behind the piece (its normal points away from it) and the cell in front
                          ///< of it; -1 on either side: nothing kept there (wall, hull or discarded region)
-    bool *piece_open; ///< true: one can pass (a graph edge, both cells >= 0); false: occluded or boundary
+    bool *piece_open;    ///< true: one can pass (a graph edge, both cells >= 0); false: occluded or boundary
     int64_t *piece_corner; ///< piece_count + 1 offsets into corners
     double (*corners)[3];  ///< convex polygons, counter-clockwise seen from the front
 } enf_graph;

@@ -409,7 +409,7 @@ static bool collect_gaps(const enf_complex *complex, const int32_t *cell_of, gap
     *gaps = NULL;
     for (int32_t p = 0; face_cell && p < complex->pieces.count; p++) {
         const int32_t *face = complex->piece_face[p];
-        if (complex->piece_cover[p] >= 0 || face[0] < 0 || face[1] < 0) continue;
+        if (complex->piece_cover[p] != ENF_PIECE_OPEN || face[0] < 0 || face[1] < 0) continue;
         int32_t behind = cell_of[face_cell[face[0]]], front = cell_of[face_cell[face[1]]];
         if (behind == front || behind < 0 || front < 0) continue;
         if (!enf_array_reserve(*gaps, capacity, count + 1)) {

@@ -7,11 +7,15 @@
 //            drawn as shells, the inside of a table leg that reaches into the table top);
 //   air      otherwise. A spawn point makes its region air (or outside, with a leak) whatever the polygons
 //   say.
+// Rounded coordinates leave hairline cracks between polygons that once met. An opening narrower than the weld
+// distance does not join two regions: where nothing wider joins them either, it is sealed (and reported);
+// inside a region such slivers stay open, so no sight line is lost.
 // --keep auto keeps the regions with spawn points; without any, every air region; if there is none, the
 // outside.
 #include "build/region.h"
 
 #include "base/array.h"
+#include "build/leak.h"
 #include "build/spawn.h"
 #include "build/winding.h"
 
@@ -44,29 +48,91 @@ static int32_t find(int32_t *parent, int32_t cell) {
     return cell;
 }
 
-/// Joins cells through open pieces; the smallest cell stands for a region, so numbering by it is canonical.
-static bool colour_cells(enf_regions *regions, const enf_complex *complex, const int32_t *face_cell) {
-    int32_t cells = complex->cell_count;
-    int32_t *parent = enf_array_new((size_t)cells, sizeof *parent);
-    regions->cell_region = enf_array_new((size_t)cells, sizeof *regions->cell_region);
-    if (!parent || !regions->cell_region) {
-        free(parent);
-        return false;
+static void unite(int32_t *parent, int32_t a, int32_t b) {
+    a = find(parent, a);
+    b = find(parent, b);
+    if (a < b) parent[b] = a;
+    if (b < a) parent[a] = b;
+}
+
+/// The cells on both sides of a piece; -1 outside the hull.
+static void piece_cells(const enf_complex *complex, const int32_t *face_cell, int32_t piece,
+                        int32_t cell[2]) {
+    for (int side = 0; side < 2; side++) {
+        int32_t face = complex->piece_face[piece][side];
+        cell[side] = face < 0 ? -1 : face_cell[face];
     }
-    for (int32_t c = 0; c < cells; c++) parent[c] = c;
+}
+
+/// Joins cells through open pieces at least `crack` wide, then those in the open that only cracks bound
+/// (needles), then seals the cracks that are left between different components. parent[cells] is the outside
+/// of the hull.
+static void join_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack,
+                       int32_t *parent, bool *walled) {
+    int32_t outside = complex->cell_count, cell[2];
     for (int32_t p = 0; p < complex->pieces.count; p++) {
-        const int32_t *face = complex->piece_face[p];
-        if (complex->piece_cover[p] >= 0 || face[0] < 0 || face[1] < 0) continue;
-        int32_t a = find(parent, face_cell[face[0]]), b = find(parent, face_cell[face[1]]);
-        if (a < b) parent[b] = a;
-        if (b < a) parent[a] = b;
+        if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
+        if (crack > 0 && enf_complex_piece_width(complex, p) < crack) continue;
+        piece_cells(complex, face_cell, p, cell);
+        unite(parent, cell[0] < 0 ? outside : cell[0], cell[1] < 0 ? outside : cell[1]);
     }
-    for (int32_t c = 0; c < cells; c++) {
-        int32_t root = find(parent, c);
-        regions->cell_region[c] = root == c ? regions->region_count++ : regions->cell_region[root];
+    if (!(crack > 0)) return;
+    for (int32_t p = 0; p < complex->pieces.count; p++) {
+        piece_cells(complex, face_cell, p, cell);
+        for (int side = 0; side < 2; side++) {
+            bool wall = complex->piece_cover[p] != ENF_PIECE_OPEN;
+            if (wall && cell[side] >= 0) walled[find(parent, cell[side])] = true;
+        }
+    }
+    walled[find(parent, outside)] = true;
+    for (int32_t p = 0; p < complex->pieces.count; p++) {
+        piece_cells(complex, face_cell, p, cell);
+        if (complex->piece_cover[p] != ENF_PIECE_OPEN || cell[0] < 0 || cell[1] < 0) continue;
+        int32_t a = find(parent, cell[0]), b = find(parent, cell[1]);
+        if (a == b || (walled[a] && walled[b])) continue;
+        bool wall = walled[a] || walled[b];
+        unite(parent, a, b);
+        walled[find(parent, a)] = wall;
+    }
+    for (int32_t p = 0; p < complex->pieces.count; p++) {
+        if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
+        piece_cells(complex, face_cell, p, cell);
+        int32_t a = cell[0] < 0 ? outside : cell[0], b = cell[1] < 0 ? outside : cell[1];
+        if (find(parent, a) == find(parent, b)) continue;
+        double area[3];
+        enf_complex_piece_area(complex, p, area);
+        regions->sealed++;
+        regions->sealed_area += sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        complex->piece_cover[p] = ENF_PIECE_SEALED;
+    }
+}
+
+/// Regions are the components over the pieces that are open now, numbered by their smallest cell.
+static bool colour_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack) {
+    int32_t cells = complex->cell_count;
+    int32_t *parent = enf_array_new((size_t)cells + 1, sizeof *parent);
+    bool *walled = enf_array_zeroed((size_t)cells + 1, sizeof *walled);
+    regions->cell_region = enf_array_new((size_t)cells, sizeof *regions->cell_region);
+    bool good = parent && walled && regions->cell_region;
+    if (good) {
+        for (int32_t c = 0; c <= cells; c++) parent[c] = c;
+        join_cells(regions, complex, face_cell, crack, parent, walled);
+        for (int32_t c = 0; c <= cells; c++) parent[c] = c;
+        for (int32_t p = 0; p < complex->pieces.count; p++) {
+            int32_t cell[2];
+            piece_cells(complex, face_cell, p, cell);
+            if (complex->piece_cover[p] == ENF_PIECE_OPEN && cell[0] >= 0 && cell[1] >= 0) {
+                unite(parent, cell[0], cell[1]);
+            }
+        }
+        for (int32_t c = 0; c < cells; c++) {
+            int32_t root = find(parent, c);
+            regions->cell_region[c] = root == c ? regions->region_count++ : regions->cell_region[root];
+        }
     }
     free(parent);
-    return true;
+    free(walled);
+    return good;
 }
 
 static bool allocate(enf_regions *regions) {
@@ -96,7 +162,8 @@ static void measure(enf_regions *regions, const enf_complex *complex, const int3
         for (int side = 0; side < 2; side++) {
             if (face[side] < 0) continue;
             int32_t region = regions->cell_region[face_cell[face[side]]];
-            if (cover < 0) {
+            if (cover == ENF_PIECE_SEALED) continue;
+            if (cover == ENF_PIECE_OPEN) {
                 if (face[1 - side] < 0) regions->touches_outside[region] = true;
             } else {
                 double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
@@ -211,117 +278,11 @@ static enf_status keep_regions(enf_regions *regions, enf_keep keep, enf_error *e
                     "Name a spawn point or use --keep all");
 }
 
-// ---------------------------------------------------------------------------------------------- leaks
-
-typedef struct search {
-    int64_t *first; ///< open pieces of each cell: offsets, cells + 1
-    int32_t *pieces;
-    int32_t *from; ///< piece through which a cell was reached; -1: not yet, -2: the start
-    int32_t *queue;
-} search;
-
-static bool list_open_pieces(search *search, const enf_complex *complex, const int32_t *face_cell) {
-    size_t cells = (size_t)complex->cell_count;
-    search->first = enf_array_zeroed(cells + 2, sizeof *search->first);
-    search->from = enf_array_new(cells, sizeof *search->from);
-    search->queue = enf_array_new(cells, sizeof *search->queue);
-    search->pieces = enf_array_new(2 * (size_t)complex->pieces.count, sizeof *search->pieces);
-    if (!search->first || !search->from || !search->queue || !search->pieces) return false;
-    for (int pass = 0; pass < 2; pass++) {
-        for (int32_t p = 0; p < complex->pieces.count; p++) {
-            if (complex->piece_cover[p] >= 0) continue;
-            for (int side = 0; side < 2; side++) {
-                if (complex->piece_face[p][side] < 0) continue;
-                int32_t cell = face_cell[complex->piece_face[p][side]];
-                if (pass == 0) {
-                    search->first[cell + 2]++;
-                } else {
-                    search->pieces[search->first[cell + 1]++] = p;
-                }
-            }
-        }
-        for (size_t c = 0; pass == 0 && c < cells; c++) search->first[c + 2] += search->first[c + 1];
-    }
-    for (size_t c = 0; c < cells; c++) search->from[c] = -1;
-    return true;
-}
-
-/// Fewest cells first. Returns the hull piece through which the outside is reached; *last is the cell before
-/// it.
-static int32_t search_outside(search *search, const enf_complex *complex, const int32_t *face_cell,
-                              int32_t start, int32_t *last) {
-    size_t head = 0, tail = 0;
-    search->queue[tail++] = start;
-    search->from[start] = -2;
-    while (head < tail) {
-        int32_t cell = search->queue[head++];
-        for (int64_t i = search->first[cell]; i < search->first[cell + 1]; i++) {
-            int32_t p = search->pieces[i];
-            const int32_t *face = complex->piece_face[p];
-            if (face[0] < 0 || face[1] < 0) {
-                *last = cell;
-                return p;
-            }
-            int32_t next = face_cell[face[face_cell[face[0]] == cell ? 1 : 0]];
-            if (search->from[next] != -1) continue;
-            search->from[next] = p;
-            search->queue[tail++] = next;
-        }
-    }
-    return -1;
-}
-
-static bool write_path(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                       const int32_t *face_cell, const search *search, int32_t exit, int32_t last) {
-    int32_t count = 2;
-    for (int32_t c = last; search->from[c] != -2; count++) {
-        const int32_t *face = complex->piece_face[search->from[c]];
-        c = face_cell[face[face_cell[face[0]] == c ? 1 : 0]];
-    }
-    regions->leak_points = enf_array_new((size_t)count, sizeof *regions->leak_points);
-    if (!regions->leak_points) return false;
-    regions->leak_point_count = count;
-    enf_complex_loop_centre(complex, &complex->pieces, exit, regions->leak_points[count - 1]);
-    int32_t at = count - 2;
-    for (int32_t c = last; search->from[c] != -2; at--) {
-        const int32_t *face = complex->piece_face[search->from[c]];
-        enf_complex_loop_centre(complex, &complex->pieces, search->from[c], regions->leak_points[at]);
-        c = face_cell[face[face_cell[face[0]] == c ? 1 : 0]];
-    }
-    memcpy(regions->leak_points[0], mesh->spawns + 3 * (size_t)regions->leak_spawn,
-           sizeof *regions->leak_points);
-    return true;
-}
-
-static bool trace_leak(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                       const int32_t *face_cell) {
-    for (int32_t s = 0; s < regions->spawn_count && !regions->leak; s++) {
-        int32_t cell = regions->spawn_cell[s];
-        if (cell < 0 || !regions->touches_outside[regions->cell_region[cell]]) continue;
-        regions->leak = true;
-        regions->leak_spawn = s;
-    }
-    if (!regions->leak) return true;
-    search search = {0};
-    int32_t last = -1;
-    bool good = list_open_pieces(&search, complex, face_cell);
-    if (good) {
-        int32_t start = regions->spawn_cell[regions->leak_spawn];
-        int32_t exit = search_outside(&search, complex, face_cell, start, &last);
-        good = exit < 0 || write_path(regions, complex, mesh, face_cell, &search, exit, last);
-    }
-    free(search.first);
-    free(search.pieces);
-    free(search.from);
-    free(search.queue);
-    return good;
-}
-
-enf_status enf_regions_colour(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                              const enf_tet_mesh *tets, enf_keep keep, enf_error *error) {
+enf_status enf_regions_colour(enf_regions *regions, enf_complex *complex, const enf_mesh *mesh,
+                              const enf_tet_mesh *tets, enf_keep keep, double crack, enf_error *error) {
     memset(regions, 0, sizeof *regions);
     int32_t *face_cell = enf_complex_face_cells(complex);
-    bool good = face_cell && colour_cells(regions, complex, face_cell) && allocate(regions);
+    bool good = face_cell && colour_cells(regions, complex, face_cell, crack) && allocate(regions);
     if (good) {
         measure(regions, complex, face_cell);
         good = enf_complex_wind(complex, face_cell, regions->cell_region, regions->region_count,
@@ -329,7 +290,8 @@ enf_status enf_regions_colour(enf_regions *regions, const enf_complex *complex, 
     }
     if (good) {
         judge(regions);
-        good = place_spawns(regions, complex, mesh, tets) && trace_leak(regions, complex, mesh, face_cell);
+        good = place_spawns(regions, complex, mesh, tets) &&
+               enf_regions_trace_leak(regions, complex, mesh, face_cell);
     }
     free(face_cell);
     enf_status status = good ? keep_regions(regions, keep, error) : enf_fail_memory(error, "the regions");

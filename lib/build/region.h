@@ -24,6 +24,9 @@ typedef struct enf_regions {
     int32_t spawn_count;
     int32_t *spawn_cell; ///< fine cell per mesh spawn, or -1 outside the hull
 
+    int32_t sealed;     ///< pieces that were sealed: cracks narrower than the tolerance between two regions
+    double sealed_area; ///< grid steps squared
+
     bool leak; ///< a spawn's region reaches the outside
     int32_t leak_spawn;
     int32_t leak_point_count; ///< polyline from the spawn to the outside, grid steps
@@ -32,10 +35,11 @@ typedef struct enf_regions {
 
 void enf_regions_free(enf_regions *regions);
 
-/// Colours the complex, finds what every region is made of, places the mesh's spawns, and applies the keep
+/// Colours the complex, seals cracks narrower than `crack` (grid steps; 0: none) between regions that are
+/// otherwise separate, finds what every region is made of, places the mesh's spawns, and applies the keep
 /// rules. `tets` is the triangulation that the complex was split from (for walking to the spawns).
 /// ENF_BAD_INPUT when --keep spawn has no spawn to go by, or nothing at all is kept.
-enf_status enf_regions_colour(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                              const enf_tet_mesh *tets, enf_keep keep, enf_error *error);
+enf_status enf_regions_colour(enf_regions *regions, enf_complex *complex, const enf_mesh *mesh,
+                              const enf_tet_mesh *tets, enf_keep keep, double crack, enf_error *error);
 
 #endif

@@ -5,6 +5,9 @@
 // the edges fall into blocks: within a block edges cross, blocks don't. A block of one edge is a term of the sum right
 // away; a larger one is cut at its crossings. The covered height at x is the sum over the edges of -y for one that
 // opens the covered part, +y for one that closes it.
+//
+// A large figure is cut into horizontal bands first, each with a sweep of its own, so that few edges are active at a time.
+// What lies below a band acts on it only through the winding number along its lower border.
 #include "build/silhouette.h"
 
 #include <math.h>
@@ -12,8 +15,11 @@
 
 #include "base/array.h"
 
-/// Only the time depends on these two.
+/// Only the time depends on these: edges in a block that is halved, how often, and bands per square root of the edges.
 enum { LARGE_BLOCK = 24, MOST_HALVINGS = 12 };
+#ifndef BAND_DIVISOR
+#define BAND_DIVISOR 2
+#endif
 
 typedef struct enf_slab_edge {
     double left, right; ///< height at the borders of the slab
@@ -27,6 +33,8 @@ typedef struct enf_slab_height {
 
 void enf_silhouette_free(enf_silhouette *work) {
     free(work->edges);
+    free(work->parts);
+    free(work->turns);
     free(work->events);
     free(work->active);
     free(work->crossings);
@@ -62,29 +70,73 @@ static int compare_events(const void *first, const void *second) {
     return compare_doubles(*(const double *)first, *(const double *)second);
 }
 
-/// Sorts the edges, drops the upright ones and those with an end that is no number, and collects the slab borders.
-static bool prepare(enf_silhouette *work, size_t *event_count) {
+static int compare_turns(const void *first, const void *second) {
+    const enf_border_turn *a = first, *b = second;
+    int order = compare_doubles(a->x, b->x);
+    return order ? order : (a->change > b->change) - (a->change < b->change);
+}
+
+/// Sorts the edges, drops those with an end that is no number, and finds how high the figure reaches.
+static void prepare(enf_silhouette *work, double *low, double *high) {
     size_t kept = 0;
+    *low = INFINITY;
+    *high = -INFINITY;
     for (size_t i = 0; i < work->edge_count; ++i) {
         const enf_contour_edge *edge = &work->edges[i];
-        if (edge->x0 < edge->x1 && edge->rise != 0 && isfinite(edge->x0) && isfinite(edge->x1) &&
-            isfinite(edge->y0) && isfinite(edge->y1))
-            work->edges[kept++] = *edge;
+        if (edge->rise == 0 || !isfinite(edge->x0) || !isfinite(edge->x1) || !isfinite(edge->y0) || !isfinite(edge->y1))
+            continue;
+        *low = fmin(*low, fmin(edge->y0, edge->y1));
+        *high = fmax(*high, fmax(edge->y0, edge->y1));
+        work->edges[kept++] = *edge;
     }
     work->edge_count = kept;
-    *event_count = 0;
-    if (kept == 0) return true;
-    qsort(work->edges, kept, sizeof *work->edges, compare_edges);
-    if (!enf_array_reserve(work->events, work->event_capacity, 2 * kept)) return false;
-    for (size_t i = 0; i < kept; ++i) {
-        work->events[2 * i] = work->edges[i].x0;
-        work->events[2 * i + 1] = work->edges[i].x1;
+    if (kept > 0) qsort(work->edges, kept, sizeof *work->edges, compare_edges);
+}
+
+/// Where an edge crosses the height y.
+static double crossing_at(const enf_contour_edge *edge, double y) {
+    double x = edge->x0 + (edge->x1 - edge->x0) * ((y - edge->y0) / (edge->y1 - edge->y0));
+    return fmin(fmax(x, edge->x0), edge->x1);
+}
+
+/// Collects the parts of the edges within the band, the turns of the winding number along its lower border, and the
+/// borders of all slabs.
+static bool fill_band(enf_silhouette *work, double low, double high, size_t *event_count) {
+    if (!enf_array_reserve(work->parts, work->part_capacity, work->edge_count) ||
+        !enf_array_reserve(work->turns, work->turn_capacity, work->edge_count) ||
+        !enf_array_reserve(work->events, work->event_capacity, 3 * work->edge_count))
+        return false;
+    size_t events = 0;
+    work->part_count = work->turn_count = 0;
+    for (size_t i = 0; i < work->edge_count; ++i) {
+        enf_contour_edge part = work->edges[i];
+        const enf_contour_edge *edge = &work->edges[i];
+        if ((edge->y0 < low && edge->y1 < low) || (edge->y0 > high && edge->y1 > high)) continue;
+        if ((edge->y0 < low) != (edge->y1 < low)) {
+            double x = crossing_at(edge, low);
+            work->turns[work->turn_count++] = (enf_border_turn){x, edge->y1 > edge->y0 ? -edge->rise : edge->rise};
+            work->events[events++] = x;
+            if (edge->y0 < low) part.x0 = x, part.y0 = low;
+            if (edge->y1 < low) part.x1 = x, part.y1 = low;
+        }
+        if ((edge->y0 > high) != (edge->y1 > high)) {
+            double x = crossing_at(edge, high);
+            if (edge->y0 > high) part.x0 = x, part.y0 = high;
+            if (edge->y1 > high) part.x1 = x, part.y1 = high;
+        }
+        if (!(part.x0 < part.x1)) continue;
+        work->parts[work->part_count++] = part;
+        work->events[events++] = part.x0;
+        work->events[events++] = part.x1;
     }
-    qsort(work->events, 2 * kept, sizeof *work->events, compare_events);
-    size_t count = 0;
-    for (size_t i = 0; i < 2 * kept; ++i)
-        if (count == 0 || work->events[i] != work->events[count - 1]) work->events[count++] = work->events[i];
-    *event_count = count;
+    *event_count = 0;
+    if (events == 0) return true;
+    qsort(work->parts, work->part_count, sizeof *work->parts, compare_edges);
+    qsort(work->turns, work->turn_count, sizeof *work->turns, compare_turns);
+    qsort(work->events, events, sizeof *work->events, compare_events);
+    for (size_t i = 0; i < events; ++i)
+        if (*event_count == 0 || work->events[i] != work->events[*event_count - 1])
+            work->events[(*event_count)++] = work->events[i];
     return true;
 }
 
@@ -176,10 +228,10 @@ static size_t block_end(const enf_silhouette *work, size_t begin, size_t count) 
     return end;
 }
 
-/// Adds the mean covered height of the slab.
-static bool add_slab(enf_silhouette *work, size_t count, double *mean) {
+/// Adds the mean covered height of the slab; `winding` is the winding number at its lower border.
+static bool add_slab(enf_silhouette *work, size_t count, int64_t winding, const double band[2], double *mean) {
     const slab_edge *active = work->active;
-    int64_t winding = 0;
+    if (winding > 0) *mean -= band[0];
     for (size_t begin = 0, end; begin < count; begin = end) {
         end = block_end(work, begin, count);
         if (end == begin + 1) {
@@ -189,6 +241,7 @@ static bool add_slab(enf_silhouette *work, size_t count, double *mean) {
             return false;
         }
     }
+    if (winding > 0) *mean += band[1];
     return true;
 }
 
@@ -201,9 +254,9 @@ static bool enter_slab(enf_silhouette *work, double from, size_t *count, size_t 
             work->active[kept].left = work->active[kept].right;
             ++kept;
         }
-    for (; *next < work->edge_count && work->edges[*next].x0 <= from; ++*next) {
+    for (; *next < work->part_count && work->parts[*next].x0 <= from; ++*next) {
         if (!enf_array_reserve(work->active, work->active_capacity, kept + 1)) return false;
-        const enf_contour_edge *edge = &work->edges[*next];
+        const enf_contour_edge *edge = &work->parts[*next];
         work->active[kept++] = (slab_edge){.left = edge->y0, .edge = edge};
     }
     *count = kept;
@@ -224,12 +277,14 @@ static size_t run_edges(enf_silhouette *work, double to, size_t count) {
     return largest;
 }
 
-bool enf_silhouette_area(enf_silhouette *work, double *area) {
-    *area = 0;
-    size_t event_count, count = 0, next = 0;
-    if (!prepare(work, &event_count)) return false;
+/// Adds the covered area of a band.
+static bool add_band(enf_silhouette *work, const double band[2], double *area) {
+    size_t event_count, count = 0, next = 0, turn = 0;
+    int64_t winding = 0;
+    if (!fill_band(work, band[0], band[1], &event_count)) return false;
     for (size_t i = 0; i + 1 < event_count; ++i) {
         double from = work->events[i];
+        for (; turn < work->turn_count && work->turns[turn].x <= from; ++turn) winding += work->turns[turn].change;
         while (from < work->events[i + 1]) {
             double to = work->events[i + 1], mean = 0;
             if (!enter_slab(work, from, &count, &next)) return false;
@@ -239,10 +294,24 @@ bool enf_silhouette_area(enf_silhouette *work, double *area) {
                 if (!(from < middle && middle < to)) break;
                 to = middle;
             }
-            if (!add_slab(work, count, &mean)) return false;
+            if (!add_slab(work, count, winding, band, &mean)) return false;
             *area += mean * (to - from);
             from = to;
         }
+    }
+    return true;
+}
+
+bool enf_silhouette_area(enf_silhouette *work, double *area) {
+    *area = 0;
+    double low, high;
+    prepare(work, &low, &high);
+    if (work->edge_count == 0) return true;
+    int bands = 1 + (int)(sqrt((double)work->edge_count) / BAND_DIVISOR);
+    for (int i = 0; i < bands; ++i) {
+        double band[2] = {low + (high - low) * ((double)i / bands), low + (high - low) * ((double)(i + 1) / bands)};
+        if (i == bands - 1) band[1] = high;
+        if (!add_band(work, band, area)) return false;
     }
     work->edge_count = 0;
     return true;

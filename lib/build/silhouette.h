@@ -9,16 +9,26 @@
 #include "enfilade/base.h"
 
 /// An edge of the plane figure. Crossing it upwards (towards larger y) changes the winding number by `rise`.
-/// The left end comes first (x0 < x1); edges with x0 == x1 count for nothing and are skipped.
+/// The left end comes first (x0 <= x1).
 typedef struct enf_contour_edge {
     double x0, y0, x1, y1;
     int32_t rise;
 } enf_contour_edge;
 
+/// Where the winding number along the lower border of a band changes, going right.
+typedef struct enf_border_turn {
+    double x;
+    int64_t change;
+} enf_border_turn;
+
 /// Working memory, kept between calls; start from {0}.
 typedef struct enf_silhouette {
     enf_contour_edge *edges; ///< the figure: fill with enf_silhouette_add
     size_t edge_count, edge_capacity;
+    enf_contour_edge *parts; ///< the edges within the band
+    size_t part_count, part_capacity;
+    enf_border_turn *turns; ///< along the lower border of the band
+    size_t turn_count, turn_capacity;
     double *events; ///< the ends of all slabs, ascending
     size_t event_capacity;
     struct enf_slab_edge *active; ///< the edges that cross the slab, bottom to top

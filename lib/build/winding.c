@@ -74,7 +74,8 @@ static bool collect_votes(const enf_complex *complex, const int32_t *face_cell, 
                 int32_t face = complex->piece_face[p][k];
                 side[k] = face < 0 ? region_count : cell_region[face_cell[face]];
             }
-            bool open = complex->piece_cover[p] < 0;
+            if (complex->piece_cover[p] == ENF_PIECE_SEALED) continue; // no polygon, no vote
+            bool open = complex->piece_cover[p] == ENF_PIECE_OPEN;
             if (side[0] == side[1] || (open && side[0] != region_count && side[1] != region_count)) continue;
             double area[3];
             enf_complex_piece_area(complex, p, area);
