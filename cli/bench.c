@@ -1,11 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// enfilade bench: tables that anybody can make again.
+#include "cli/bench.h"
+
 #include "cli/cli.h"
 
 #include <stdio.h>
+#include <string.h>
+
+static const cli_command benches[] = {
+    {"thesis", "the worlds of the thesis: cells, splits, rooms found", cli_bench_thesis},
+    {"levels", "DIR: compile every level in a folder; a row each", cli_bench_levels},
+};
+
+enum { BENCH_COUNT = sizeof benches / sizeof *benches };
+
+static void print_usage(FILE *file) {
+    fputs("usage: enfilade bench NAME ...\n\n", file);
+    for (int i = 0; i < BENCH_COUNT; i++) fprintf(file, "  %-9s %s\n", benches[i].name, benches[i].summary);
+}
 
 int cli_bench(int argc, char **argv) {
-    (void)argc;
-    (void)argv;
-    fputs("enfilade bench: not built yet\n", stderr);
+    if (argc > 0 && (strcmp(argv[0], "--help") == 0 || strcmp(argv[0], "-h") == 0)) {
+        print_usage(stdout);
+        return ENF_OK;
+    }
+    for (int i = 0; argc > 0 && i < BENCH_COUNT; i++)
+        if (strcmp(benches[i].name, argv[0]) == 0) return benches[i].run(argc - 1, argv + 1);
+    if (argc > 0)
+        fprintf(stderr, "enfilade bench: there is no table '%.100s'\n", argv[0]);
+    else
+        fputs("enfilade bench: the name of a table is missing\n", stderr);
+    print_usage(stderr);
     return ENF_BAD_USAGE;
 }

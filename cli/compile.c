@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // enfilade compile: polygons in, world file out.
+#include "base/timer.h"
 #include "build/write.h"
 #include "cli/cli.h"
 #include "cli/report.h"
@@ -76,12 +77,12 @@ static void warn_of_leak(const cli_job *job, const char *path) {
 }
 
 static enf_status write_world(cli_job *job, const char *path, enf_error *error) {
-    double started = cli_seconds();
+    double started = enf_timer_now();
     enf_status status = enf_build_write(&job->build, job->options_json, path, error);
     struct stat about;
     if (!status && stat(path, &about) == 0 && S_ISREG(about.st_mode))
         job->file_size = (uint64_t)about.st_size;
-    job->write_seconds = cli_seconds() - started;
+    job->write_seconds = enf_timer_now() - started;
     job->seconds += job->write_seconds;
     job->peak_bytes = cli_peak_bytes();
     return status;

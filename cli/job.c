@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/job.h"
 
+#include "base/timer.h"
 #include "build/json.h"
 #include "shim/shim.h"
 
@@ -116,14 +117,14 @@ static enf_status read_inputs(cli_job *job, const cli_texts *inputs, enf_error *
 }
 
 enf_status cli_job_run(cli_job *job, const cli_texts *inputs, cli_progress *progress, enf_error *error) {
-    double started = cli_seconds();
+    double started = enf_timer_now();
     if (progress) cli_progress_report(progress, "read", 0);
     enf_status status = read_inputs(job, inputs, error);
-    job->read_seconds = cli_seconds() - started;
+    job->read_seconds = enf_timer_now() - started;
     job->options.progress = progress ? cli_progress_report : NULL;
     job->options.progress_user = progress;
     if (!status) status = enf_build_run(&job->build, &job->options, error);
-    job->seconds = cli_seconds() - started;
+    job->seconds = enf_timer_now() - started;
     job->peak_bytes = cli_peak_bytes();
     return status;
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/progress.h"
 
+#include "base/timer.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double patience = 1.0, redraw_interval = 0.05; // seconds
@@ -23,14 +24,8 @@ bool cli_was_interrupted(void) {
     return interrupted != 0;
 }
 
-double cli_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 void cli_progress_start(cli_progress *progress, cli_progress_mode mode) {
-    *progress = (cli_progress){.mode = mode, .terminal = isatty(STDERR_FILENO), .started = cli_seconds()};
+    *progress = (cli_progress){.mode = mode, .terminal = isatty(STDERR_FILENO), .started = enf_timer_now()};
     struct sigaction action = {.sa_handler = note_interrupt, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
@@ -60,7 +55,7 @@ bool cli_progress_report(void *user, const char *stage, double fraction) {
         }
         return true;
     }
-    double now = cli_seconds();
+    double now = enf_timer_now();
     if (progress->mode == CLI_PROGRESS_AUTO && now - progress->started < patience) return true;
     if (!new_stage && now - progress->drawn < redraw_interval) return true;
     progress->drawn = now;

@@ -33,7 +33,4 @@ void cli_progress_stop(cli_progress *progress);
 /// True after SIGINT or SIGTERM.
 bool cli_was_interrupted(void);
 
-/// Seconds of a clock that never goes back.
-double cli_seconds(void);
-
 #endif

@@ -28,11 +28,17 @@ struct homogeneous {
     integer weight;
 };
 
-vector whole(const double p[3]) { return {integer(p[0]), integer(p[1]), integer(p[2])}; }
+vector whole(const double p[3]) {
+    return {integer(p[0]), integer(p[1]), integer(p[2])};
+}
 
-vector minus(const vector &a, const vector &b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+vector minus(const vector &a, const vector &b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
 
-integer dot(const vector &a, const vector &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+integer dot(const vector &a, const vector &b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 vector cross(const vector &a, const vector &b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -55,17 +61,23 @@ homogeneous corner_of(const oracle_corner *corner) {
     for (size_t i = 0; i < 3; i++) plane[i] = plane_of(&corner->planes[i]);
     homogeneous out;
     for (size_t column = 0; column < 4; column++) {
-        auto entry = [&](size_t row, size_t k) { return k == column ? -plane[row].offset : plane[row].normal[k]; };
-        integer value = CGAL::determinant(entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 0), entry(1, 1), entry(1, 2),
-                                          entry(2, 0), entry(2, 1), entry(2, 2));
+        auto entry = [&](size_t row, size_t k) {
+            return k == column ? -plane[row].offset : plane[row].normal[k];
+        };
+        integer value = CGAL::determinant(entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 0), entry(1, 1),
+                                          entry(1, 2), entry(2, 0), entry(2, 1), entry(2, 2));
         (column < 3 ? out.at[column] : out.weight) = value;
     }
     return out;
 }
 
-int sign_of(const integer &value) { return static_cast<int>(CGAL::sign(value)); }
+int sign_of(const integer &value) {
+    return static_cast<int>(CGAL::sign(value));
+}
 
-kernel::Point_3 kernel_point(const double p[3]) { return {rational(p[0]), rational(p[1]), rational(p[2])}; }
+kernel::Point_3 kernel_point(const double p[3]) {
+    return {rational(p[0]), rational(p[1]), rational(p[2])};
+}
 
 kernel::Plane_3 kernel_plane(const oracle_plane *plane) {
     kernel::Point_3 p = kernel_point(plane->p), q = kernel_point(plane->q);
@@ -104,7 +116,8 @@ bool oracle_spans(const oracle_plane *plane) {
 }
 
 bool oracle_crosses(const oracle_plane planes[3]) {
-    return sign_of(dot(plane_of(&planes[0]).normal, cross(plane_of(&planes[1]).normal, plane_of(&planes[2]).normal))) != 0;
+    return sign_of(dot(plane_of(&planes[0]).normal,
+                       cross(plane_of(&planes[1]).normal, plane_of(&planes[2]).normal))) != 0;
 }
 
 int oracle_side(const oracle_corner *corner, const oracle_plane *plane) {
@@ -136,7 +149,8 @@ bool oracle_same_way(const oracle_plane *a, const oracle_plane *b) {
     return sign_of(dot(plane_of(a).normal, plane_of(b).normal)) > 0;
 }
 
-bool oracle_position_error(const oracle_corner *corner, const double position[3], double reach, double *error) {
+bool oracle_position_error(const oracle_corner *corner, const double position[3], double reach,
+                           double *error) {
     homogeneous h = corner_of(corner);
     *error = 0;
     for (size_t i = 0; i < 3; i++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decimation against a slow reference that weighs every portal anew after every collapse, on boxes cut by random planes and
-// on lattices full of ties.
+// Decimation against a slow reference that weighs every portal anew after every collapse, on boxes cut by
+// random planes and on lattices full of ties.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,9 +23,12 @@ static uint64_t next_random(uint64_t *state) {
     return z ^ z >> 31;
 }
 
-static double random_unit(uint64_t *state) { return (double)(next_random(state) >> 11) * 0x1p-53; }
+static double random_unit(uint64_t *state) {
+    return (double)(next_random(state) >> 11) * 0x1p-53;
+}
 
-// ---- Worlds ------------------------------------------------------------------------------------------------------------
+// ---- Worlds
+// ------------------------------------------------------------------------------------------------------------
 
 typedef struct flat {
     int32_t cell[2];
@@ -51,7 +54,8 @@ static void add_piece(world *w, const flat *piece) {
     w->pieces[w->count++] = *piece;
 }
 
-/// The faces of the lattice cube at (x, y, z): `axis` and its two successors, the front in positive direction.
+/// The faces of the lattice cube at (x, y, z): `axis` and its two successors, the front in positive
+/// direction.
 static flat lattice_face(int axis, const int at[3], double size) {
     static const int steps[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     flat face = {.count = 4};
@@ -63,8 +67,10 @@ static flat lattice_face(int axis, const int at[3], double size) {
     return face;
 }
 
-/// `cell_at` tells the cell of each lattice place, -1 for rock; its size is size[0] * size[1] * size[2], x fastest.
-static world lattice_world(const int size[3], const int32_t *cell_at, double unit, int closed_of_100, uint64_t *seed) {
+/// `cell_at` tells the cell of each lattice place, -1 for rock; its size is size[0] * size[1] * size[2], x
+/// fastest.
+static world lattice_world(const int size[3], const int32_t *cell_at, double unit, int closed_of_100,
+                           uint64_t *seed) {
     world w = world_new();
     for (int axis = 0; axis < 3; ++axis)
         for (int z = 0; z <= size[2]; ++z)
@@ -85,7 +91,8 @@ static world lattice_world(const int size[3], const int32_t *cell_at, double uni
                     flat face = lattice_face(axis, at, unit);
                     face.cell[0] = cells[0];
                     face.cell[1] = cells[1];
-                    face.open = cells[0] >= 0 && cells[1] >= 0 && (int)(next_random(seed) % 100) >= closed_of_100;
+                    face.open =
+                        cells[0] >= 0 && cells[1] >= 0 && (int)(next_random(seed) % 100) >= closed_of_100;
                     add_piece(&w, &face);
                 }
     return w;
@@ -124,7 +131,8 @@ static void area_vector(const flat *piece, double sum[3]) {
     sum[0] = sum[1] = sum[2] = 0;
     for (int i = 0; i < piece->count; ++i) {
         const double *p = piece->corners[i], *q = piece->corners[(i + 1) % piece->count];
-        for (int k = 0; k < 3; ++k) sum[k] += (p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3]) / 2;
+        for (int k = 0; k < 3; ++k)
+            sum[k] += (p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3]) / 2;
     }
 }
 
@@ -136,7 +144,8 @@ static flat large_square(const double plane[4]) {
     for (int i = 0; i < 3; ++i) u[i] -= plane[k] * plane[i];
     for (int i = 0; i < 3; ++i) length += u[i] * u[i];
     for (int i = 0; i < 3; ++i) u[i] /= sqrt(length);
-    for (int i = 0; i < 3; ++i) v[i] = plane[(i + 1) % 3] * u[(i + 2) % 3] - plane[(i + 2) % 3] * u[(i + 1) % 3];
+    for (int i = 0; i < 3; ++i)
+        v[i] = plane[(i + 1) % 3] * u[(i + 2) % 3] - plane[(i + 2) % 3] * u[(i + 1) % 3];
     static const int signs[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     flat square = {.count = 4};
     for (int c = 0; c < 4; ++c)
@@ -177,7 +186,8 @@ static void cut_cell(world *w, int32_t cell, const double plane[4], bool open) {
     if (cap.count >= 3) add_piece(w, &cap);
 }
 
-/// A box cut by random planes: convex cells in general position, with T-junctions; some cells rock, some pieces closed.
+/// A box cut by random planes: convex cells in general position, with T-junctions; some cells rock, some
+/// pieces closed.
 static world cut_world(int cells, uint64_t *seed) {
     static const int size[3] = {1, 1, 1};
     static const int32_t one = 0;
@@ -259,7 +269,8 @@ static void shuffle(world *w, uint64_t *seed) {
     }
 }
 
-// ---- The reference -----------------------------------------------------------------------------------------------------
+// ---- The reference
+// -----------------------------------------------------------------------------------------------------
 
 typedef struct shadow {
     int count;
@@ -295,7 +306,8 @@ static bool is_apart(const shadow *p, const shadow *q) {
         const double *a = q->corners[i], *b = q->corners[(i + 1) % q->count];
         double length = hypot(b[0] - a[0], b[1] - a[1]);
         bool outside = length > 1e-9; // a shorter edge is rounding and has no direction
-        for (int j = 0; outside && j < p->count; ++j) outside = left_of(a, b, p->corners[j]) <= 1e-14 * length;
+        for (int j = 0; outside && j < p->count; ++j)
+            outside = left_of(a, b, p->corners[j]) <= 1e-14 * length;
         if (outside) return true;
     }
     return false;
@@ -420,7 +432,8 @@ static size_t slow_decimate(const world *w, enf_heuristic heuristic, enf_collaps
         for (int32_t c = 0; c < w->cell_count; ++c) {
             if (r.label[c] == best[1]) r.label[c] = best[0];
             for (int k = 0; k < 2; ++k)
-                weights[(size_t)c * cells + (size_t)best[k]] = weights[(size_t)best[k] * cells + (size_t)c] = NAN;
+                weights[(size_t)c * cells + (size_t)best[k]] = weights[(size_t)best[k] * cells + (size_t)c] =
+                    NAN;
         }
     }
     free(r.label);
@@ -429,7 +442,8 @@ static size_t slow_decimate(const world *w, enf_heuristic heuristic, enf_collaps
     return done;
 }
 
-// ---- Tests -------------------------------------------------------------------------------------------------------------
+// ---- Tests
+// -------------------------------------------------------------------------------------------------------------
 
 static enf_decimation decimate(const world *w, enf_heuristic heuristic, enf_stop stop, double unit) {
     enf_graph graph = graph_of(w);
@@ -452,8 +466,9 @@ static void expect_reference(const world *w, enf_heuristic heuristic) {
     for (size_t i = 0; i < count; ++i) {
         const enf_collapse *a = &out.collapses[i], *b = &expected[i];
         if (a->kept != b->kept || a->gone != b->gone || fabs(a->weight - b->weight) > 1e-8 * b->weight)
-            fail_msg("%s, collapse %zu: %d <- %d at %.12g instead of %d <- %d at %.12g", enf_heuristic_name(heuristic), i,
-                     a->kept, a->gone, a->weight, b->kept, b->gone, b->weight);
+            fail_msg("%s, collapse %zu: %d <- %d at %.12g instead of %d <- %d at %.12g",
+                     enf_heuristic_name(heuristic), i, a->kept, a->gone, a->weight, b->kept, b->gone,
+                     b->weight);
     }
     assert_true(isinf(out.next_weight));
     enf_decimation_free(&out);
@@ -522,8 +537,10 @@ static void every_cell_is_connected_through_open_pieces(void **state) {
     print_message("seed %llu\n", (unsigned long long)seed);
     for (int cells = 1; cells < 60; cells += 7) {
         world w = cut_world(120, &seed);
-        enf_decimation out = decimate(&w, ENF_HEURISTIC_ASPECT, (enf_stop){.rule = ENF_STOP_CELLS, .cells = cells}, 1);
-        // Spread numbers over open pieces within cells; every fine cell must end up with the smallest of its cell.
+        enf_decimation out =
+            decimate(&w, ENF_HEURISTIC_ASPECT, (enf_stop){.rule = ENF_STOP_CELLS, .cells = cells}, 1);
+        // Spread numbers over open pieces within cells; every fine cell must end up with the smallest of its
+        // cell.
         int32_t reached[120], smallest[120];
         for (int32_t c = 0; c < w.cell_count; ++c) {
             reached[c] = c;
@@ -578,7 +595,8 @@ static void aspect_is_free_of_scale_and_aspect_scaled_counts_in_world_units(void
     uint64_t seed = 77;
     world w = cut_world(40, &seed);
     for (int heuristic = 0; heuristic < ENF_HEURISTIC_COUNT; ++heuristic) {
-        enf_decimation one = decimate(&w, heuristic, down_to_one, 1), eight = decimate(&w, heuristic, down_to_one, 8);
+        enf_decimation one = decimate(&w, heuristic, down_to_one, 1),
+                       eight = decimate(&w, heuristic, down_to_one, 8);
         double scale = heuristic == ENF_HEURISTIC_ASPECT ? 1 : 0.125;
         for (size_t i = 0; i < one.collapse_count; ++i) {
             assert_int_equal(one.collapses[i].gone, eight.collapses[i].gone);
@@ -604,8 +622,10 @@ static void names_and_stop_rules_are_read(void **state) {
     assert_true(stop.rule == ENF_STOP_WEIGHT && stop.weight == 2.5);
     assert_int_equal(enf_stop_parse("cells=12", &stop, &error), ENF_OK);
     assert_true(stop.rule == ENF_STOP_CELLS && stop.cells == 12);
-    const char *bad[] = {"", "weight", "weight=", "weight=x", "weight=-1", "weight=nan", "weight=3m", "cells=", "cells=0",
-                         "cells=-4", "cells=1.5", "cells=99999999999999999999", "autos"};
+    const char *bad[] = {
+        "",          "weight", "weight=", "weight=x", "weight=-1", "weight=nan",
+        "weight=3m", "cells=", "cells=0", "cells=-4", "cells=1.5", "cells=99999999999999999999",
+        "autos"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i)
         assert_int_equal(enf_stop_parse(bad[i], &stop, &error), ENF_BAD_USAGE);
 }
@@ -628,8 +648,9 @@ static void cancelling_leaves_nothing_behind(void **state) {
     enf_decimation out;
     enf_error error;
     int calls = 0;
-    assert_int_equal(enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &down_to_one, 1, say_no, &calls, &out, &error),
-                     ENF_NO_RESOURCES);
+    assert_int_equal(
+        enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &down_to_one, 1, say_no, &calls, &out, &error),
+        ENF_NO_RESOURCES);
     assert_int_equal(calls, 1);
     assert_non_null(strstr(error.text, "cancelled"));
     graph_free(&graph);
@@ -644,7 +665,8 @@ static void strange_graphs_are_refused_or_done(void **state) {
     enf_error error;
     int64_t offsets[2] = {0, 3};
     enf_graph graph = {.piece_corner = offsets};
-    assert_int_equal(enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &stop, 1, NULL, NULL, &out, &error), ENF_OK);
+    assert_int_equal(enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &stop, 1, NULL, NULL, &out, &error),
+                     ENF_OK);
     assert_int_equal(out.cell_count, 0);
     enf_decimation_free(&out);
     // Two cells and one piece of no area, then of corners that are no numbers.
@@ -653,7 +675,8 @@ static void strange_graphs_are_refused_or_done(void **state) {
     double corners[3][3] = {{0}};
     graph = (enf_graph){2, 1, cells, &open, offsets, corners};
     for (int round = 0; round < 2; ++round) {
-        assert_int_equal(enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &stop, 1, NULL, NULL, &out, &error), ENF_OK);
+        assert_int_equal(enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &stop, 1, NULL, NULL, &out, &error),
+                         ENF_OK);
         enf_decimation_free(&out);
         for (int i = 0; i < 9; ++i) corners[i / 3][i % 3] = i % 2 ? NAN : INFINITY;
     }

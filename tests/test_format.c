@@ -9,10 +9,12 @@
 #include "format/sections.h"
 
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -139,6 +141,29 @@ static void sections_are_aligned_and_padding_is_zero(void **state) {
         end = sections[i].offset + sections[i].size;
     }
     assert_int_equal(end, s->size);
+}
+
+static void neighbours_share_the_face_between_them(void **state) {
+    saved *s = *state;
+    enf_file_view view;
+    assert_int_equal(enf_file_read(&view, s->bytes, s->size, false, NULL), ENF_OK);
+    int hull = 0;
+    for (int32_t i = 0; i < view.tetrahedron_count; i++) {
+        for (int k = 0; k < 4; k++) {
+            int32_t next = view.tetrahedron_next[i][k];
+            if (next < 0) {
+                hull++;
+                continue;
+            }
+            for (int c = 0; c < 4; c++) {
+                bool shared = false;
+                for (int n = 0; n < 4; n++)
+                    shared = shared || view.tetrahedra[next][n] == view.tetrahedra[i][c];
+                assert_true(shared == (c != k));
+            }
+        }
+    }
+    assert_int_equal(hull, 6 * 4 * 2);
 }
 
 static void portals_face_the_cell_they_lead_from(void **state) {
@@ -458,6 +483,32 @@ static void failing_to_write_leaves_nothing_behind(void **state) {
     assert_int_equal(rmdir(folder), 0);
 }
 
+static void a_full_disk_leaves_the_old_file(void **state) {
+    saved *s = *state;
+    char path[] = "full-XXXXXX";
+    int file = mkstemp(path);
+    assert_true(file >= 0);
+    assert_int_equal(write(file, "old", 3), 3);
+    close(file);
+    struct rlimit limit, small;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    small = limit;
+    small.rlim_cur = 4096;
+    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    enf_error error = {0};
+    enf_status status = enf_build_write(&s->fixture.build, NULL, path, &error);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    signal(SIGXFSZ, handler);
+    assert_int_equal(status, ENF_NO_RESOURCES);
+    size_t size;
+    unsigned char *bytes = fixture_read_file(path, &size);
+    assert_int_equal(size, 3);
+    assert_memory_equal(bytes, "old", 3);
+    free(bytes);
+    remove(path);
+}
+
 static void an_old_file_is_replaced_as_a_whole(void **state) {
     saved *s = *state;
     char folder[] = "format-XXXXXX";
@@ -528,6 +579,7 @@ int main(void) {
         cmocka_unit_test(names_and_options_come_back),
         cmocka_unit_test(the_same_world_gives_the_same_bytes),
         cmocka_unit_test(sections_are_aligned_and_padding_is_zero),
+        cmocka_unit_test(neighbours_share_the_face_between_them),
         cmocka_unit_test(portals_face_the_cell_they_lead_from),
         cmocka_unit_test(triangles_keep_the_inputs_corners_and_cells_list_what_they_see),
         cmocka_unit_test(every_changed_byte_is_noticed),
@@ -539,6 +591,7 @@ int main(void) {
         cmocka_unit_test(hostile_numbers_never_crash),
         cmocka_unit_test(each_kind_of_bad_index_is_named),
         cmocka_unit_test(failing_to_write_leaves_nothing_behind),
+        cmocka_unit_test(a_full_disk_leaves_the_old_file),
         cmocka_unit_test(an_old_file_is_replaced_as_a_whole),
         cmocka_unit_test(unreadable_paths_are_told_from_bad_files),
         cmocka_unit_test(misaligned_memory_is_refused),

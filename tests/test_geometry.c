@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every exact decision of build/geometry.h, build/loop.h and base/exact.h against the oracle, on points that are mostly
-// degenerate: small lattices, few planes shared by many points, and those moved by one grid step at the largest magnitude.
+// Every exact decision of build/geometry.h, build/loop.h and base/exact.h against the oracle, on points that
+// are mostly degenerate: small lattices, few planes shared by many points, and those moved by one grid step
+// at the largest magnitude.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -39,7 +40,8 @@ static long scaled(long usual) {
     return scale > 0 ? (long)ceil((double)usual * scale) : usual;
 }
 
-// ---- Scenes: points and planes ------------------------------------------------------------------------------------------
+// ---- Scenes: points and planes
+// ------------------------------------------------------------------------------------------
 
 typedef struct scene {
     int kind;
@@ -51,7 +53,9 @@ typedef struct scene {
 
 static const int64_t largest = INT64_C(1) << 53;
 
-static int64_t clamp(int64_t x) { return x > largest ? largest : x < -largest ? -largest : x; }
+static int64_t clamp(int64_t x) {
+    return x > largest ? largest : x < -largest ? -largest : x;
+}
 
 static void random_points(scene *s, uint64_t *state) {
     const int64_t unit = INT64_C(1) << 50;
@@ -67,23 +71,45 @@ static void random_points(scene *s, uint64_t *state) {
         for (int k = 0; k < 3; k++) {
             int64_t jitter = between(state, 0, 5) == 0 ? between(state, -1, 1) : 0, x = 0;
             switch (s->kind) {
-            case 0: x = between(state, -2, 2); break;                                // a small lattice
-            case 1: x = between(state, -4, 4) * 2 * unit; break;                     // the same, as large as can be
-            case 2: x = between(state, -largest, largest); break;                    // anywhere
-            case 3: x = between(state, -4, 4) * 2 * unit + jitter; break;            // a lattice, not quite
-            case 4: x = levels[k][between(state, 0, 2)]; break;                      // corners of boxes
-            case 5: x = origin[k] + i * u[k] + j * v[k]; break;                      // all in one plane
-            case 6: x = origin[k] + i * u[k] + j * v[k] + jitter; break;             // nearly
-            case 7: x = between(state, -(INT64_C(1) << 20), INT64_C(1) << 20) * 64; break; // few significant bits
-            case 8: x = i * largest + between(state, -2, 2); break;                  // near a diagonal of the whole grid
-            default: x = k == 0 ? origin[0] : i * largest + between(state, -2, 2); break; // that in an axis plane
+            case 0:
+                x = between(state, -2, 2);
+                break; // a small lattice
+            case 1:
+                x = between(state, -4, 4) * 2 * unit;
+                break; // the same, as large as can be
+            case 2:
+                x = between(state, -largest, largest);
+                break; // anywhere
+            case 3:
+                x = between(state, -4, 4) * 2 * unit + jitter;
+                break; // a lattice, not quite
+            case 4:
+                x = levels[k][between(state, 0, 2)];
+                break; // corners of boxes
+            case 5:
+                x = origin[k] + i * u[k] + j * v[k];
+                break; // all in one plane
+            case 6:
+                x = origin[k] + i * u[k] + j * v[k] + jitter;
+                break; // nearly
+            case 7:
+                x = between(state, -(INT64_C(1) << 20), INT64_C(1) << 20) * 64;
+                break; // few significant bits
+            case 8:
+                x = i * largest + between(state, -2, 2);
+                break; // near a diagonal of the whole grid
+            default:
+                x = k == 0 ? origin[0] : i * largest + between(state, -2, 2);
+                break; // that in an axis plane
             }
             s->points[3 * p + k] = (double)clamp(x);
         }
     }
 }
 
-static const double *point_at(const scene *s, int32_t p) { return s->points + 3 * p; }
+static const double *point_at(const scene *s, int32_t p) {
+    return s->points + 3 * p;
+}
 
 static oracle_plane describe(const scene *s, const int32_t defined[3]) {
     oracle_plane plane = {.axis = defined[2] < 0 ? -1 - defined[2] : -1};
@@ -128,8 +154,11 @@ static bool make_scene(scene *s, int kind, uint64_t *state) {
     s->kind = kind;
     random_points(s, state);
     if (!random_planes(s, state)) return false;
-    s->geometry = (enf_geometry){
-        .point_count = POINTS, .points = s->points, .planes = s->planes, .filters = s->filters, .plane_count = PLANES};
+    s->geometry = (enf_geometry){.point_count = POINTS,
+                                 .points = s->points,
+                                 .planes = s->planes,
+                                 .filters = s->filters,
+                                 .plane_count = PLANES};
     for (int32_t i = 0; i < PLANES; i++) enf_geometry_set_plane(&s->geometry, i);
     return true;
 }
@@ -149,7 +178,8 @@ static bool random_crossing(scene *s, enf_geometry *geometry, uint64_t *state, i
     return false;
 }
 
-// ---- Predicates ---------------------------------------------------------------------------------------------------------
+// ---- Predicates
+// ---------------------------------------------------------------------------------------------------------
 
 static void orientation_of_four_points_is_right(void **unused) {
     (void)unused;
@@ -160,7 +190,8 @@ static void orientation_of_four_points_is_right(void **unused) {
         for (int k = 0; k < 10; k++) {
             const double *p[4];
             for (int j = 0; j < 4; j++) p[j] = point_at(&s, (int32_t)between(&state, 0, POINTS - 1));
-            assert_int_equal(enf_points_orient(p[0], p[1], p[2], p[3]), oracle_orient(p[0], p[1], p[2], p[3]));
+            assert_int_equal(enf_points_orient(p[0], p[1], p[2], p[3]),
+                             oracle_orient(p[0], p[1], p[2], p[3]));
         }
     }
 }
@@ -191,7 +222,8 @@ static void side_of_a_plane_is_right(void **unused) {
     }
     printf("%llu cases, %llu of them on the plane; %llu by filter, %llu exactly\n", (unsigned long long)cases,
            (unsigned long long)zeros, (unsigned long long)filter, (unsigned long long)exact);
-    assert_true(zeros > cases / 20 && filter > 0 && exact > cases / 20); // the cases are as hard as they are meant to be
+    assert_true(zeros > cases / 20 && filter > 0 &&
+                exact > cases / 20); // the cases are as hard as they are meant to be
 }
 
 static void shared_crossings_are_the_same_as_own_ones(void **unused) {
@@ -268,7 +300,8 @@ static void dominant_axis_and_facing_are_right(void **unused) {
             for (int32_t q = 0; q < p; q++) {
                 if (s.planes[q][2] < 0) continue;
                 bool same = true;
-                for (int k = 0; k < 3; k++) same = same && enf_geometry_side(&s.geometry, s.planes[q][k], p) == 0;
+                for (int k = 0; k < 3; k++)
+                    same = same && enf_geometry_side(&s.geometry, s.planes[q][k], p) == 0;
                 if (!same) continue;
                 parallel++;
                 oracle_plane other = describe(&s, s.planes[q]);
@@ -279,7 +312,8 @@ static void dominant_axis_and_facing_are_right(void **unused) {
     assert_true(parallel > 0);
 }
 
-// ---- Loops --------------------------------------------------------------------------------------------------------------
+// ---- Loops
+// --------------------------------------------------------------------------------------------------------------
 
 /// The corners of a loop for the oracle. The caller frees them.
 static oracle_corner *describe_loop(const scene *s, const enf_pool *pool, enf_loop loop) {
@@ -290,8 +324,8 @@ static oracle_corner *describe_loop(const scene *s, const enf_pool *pool, enf_lo
     return corners;
 }
 
-/// The loop is a convex polygon on its plane: every edge plane holds the ends of its edge, and no corner but those lies on
-/// the other side of it.
+/// The loop is a convex polygon on its plane: every edge plane holds the ends of its edge, and no corner but
+/// those lies on the other side of it.
 static void assert_convex(const scene *s, enf_pool *pool, enf_loop loop) {
     assert_true(loop.count >= 3);
     oracle_corner *corners = describe_loop(s, pool, loop);
@@ -308,8 +342,8 @@ static void assert_convex(const scene *s, enf_pool *pool, enf_loop loop) {
     free(corners);
 }
 
-/// A triangle on plane 0 with edge planes that are not parallel to it; planes 0 to 3 are set for it. False if the points
-/// drawn are of no use.
+/// A triangle on plane 0 with edge planes that are not parallel to it; planes 0 to 3 are set for it. False if
+/// the points drawn are of no use.
 static bool make_triangle(scene *s, enf_pool *pool, uint64_t *state, enf_loop *triangle) {
     int32_t corner[3];
     for (int i = 0; i < 3; i++) corner[i] = (int32_t)between(state, 0, POINTS - 1);
@@ -348,12 +382,15 @@ static enf_position oracle_classify(const scene *s, const enf_pool *pool, enf_lo
 }
 
 /// Area(whole) = area(one) + area(two), all turning the same way.
-static void assert_areas_add_up(const scene *s, const enf_pool *pool, enf_loop whole, enf_loop one, enf_loop two) {
-    oracle_corner *corners[3] = {describe_loop(s, pool, whole), describe_loop(s, pool, one), describe_loop(s, pool, two)};
+static void assert_areas_add_up(const scene *s, const enf_pool *pool, enf_loop whole, enf_loop one,
+                                enf_loop two) {
+    oracle_corner *corners[3] = {describe_loop(s, pool, whole), describe_loop(s, pool, one),
+                                 describe_loop(s, pool, two)};
     oracle_plane plane = describe(s, s->planes[0]);
     int sign, sign_of_area, expected = 0;
     int axis = oracle_dominant_axis(&plane, &expected);
-    sign = oracle_compare_areas(axis, corners[0], whole.count, corners[1], one.count, corners[2], two.count, &sign_of_area);
+    sign = oracle_compare_areas(axis, corners[0], whole.count, corners[1], one.count, corners[2], two.count,
+                                &sign_of_area);
     assert_int_equal(sign, 0);
     assert_int_equal(sign_of_area, expected);
     oracle_compare_areas(axis, corners[1], one.count, NULL, 0, NULL, 0, &sign_of_area);
@@ -370,7 +407,8 @@ static void cutting_a_loop_loses_no_area(void **unused) {
         scene s;
         enf_pool pool = {.share_cut = i % 2};
         enf_loop loop;
-        if (!make_scene(&s, (int)(i % SCENE_KINDS), &state) || !make_triangle(&s, &pool, &state, &loop)) continue;
+        if (!make_scene(&s, (int)(i % SCENE_KINDS), &state) || !make_triangle(&s, &pool, &state, &loop))
+            continue;
         assert_convex(&s, &pool, loop);
         for (int32_t p = 4; p < PLANES; p++) {
             enf_position position = enf_pool_classify(&pool, loop, p);
@@ -400,11 +438,13 @@ static void keeping_both_sides_keeps_all_area(void **unused) {
         scene s;
         enf_pool pool = {0};
         enf_loop loop;
-        if (!make_scene(&s, (int)(i % SCENE_KINDS), &state) || !make_triangle(&s, &pool, &state, &loop)) continue;
+        if (!make_scene(&s, (int)(i % SCENE_KINDS), &state) || !make_triangle(&s, &pool, &state, &loop))
+            continue;
         for (int32_t p = 4; p < PLANES; p++) {
             enf_position position = oracle_classify(&s, &pool, loop, p);
             enf_loop behind = loop, front = loop;
-            bool some_behind = enf_pool_keep(&pool, &behind, p, -1), some_front = enf_pool_keep(&pool, &front, p, 1);
+            bool some_behind = enf_pool_keep(&pool, &behind, p, -1),
+                 some_front = enf_pool_keep(&pool, &front, p, 1);
             assert_int_equal(some_behind, position == ENF_POSITION_BEHIND || position == ENF_POSITION_ACROSS);
             assert_int_equal(some_front, position == ENF_POSITION_FRONT || position == ENF_POSITION_ACROSS);
             if (some_behind && some_front) assert_areas_add_up(&s, &pool, loop, behind, front);
@@ -422,13 +462,15 @@ static void a_loop_and_its_parts_intersect_in_the_parts(void **unused) {
         scene s;
         enf_pool pool = {0};
         enf_loop whole, behind, front;
-        if (!make_scene(&s, (int)(i % SCENE_KINDS), &state) || !make_triangle(&s, &pool, &state, &whole)) continue;
+        if (!make_scene(&s, (int)(i % SCENE_KINDS), &state) || !make_triangle(&s, &pool, &state, &whole))
+            continue;
         int32_t p = 4;
         while (p < PLANES && enf_pool_classify(&pool, whole, p) != ENF_POSITION_ACROSS) p++;
         if (p < PLANES) {
             tried++;
             enf_pool_cut(&pool, whole, p, &behind, &front);
-            enf_loop nothing = behind, back = enf_pool_reversed(&pool, enf_pool_reversed(&pool, whole)), part = front;
+            enf_loop nothing = behind, back = enf_pool_reversed(&pool, enf_pool_reversed(&pool, whole)),
+                     part = front;
             assert_false(enf_pool_intersect(&pool, &nothing, front)); // they share an edge only
             assert_true(enf_pool_intersect(&pool, &part, whole));
             assert_true(enf_pool_intersect(&pool, &back, front));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The indexed heap against a plain array that is searched from end to end, and the pair table against a matrix.
+// The indexed heap against a plain array that is searched from end to end, and the pair table against a
+// matrix.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -71,7 +72,8 @@ static void the_top_is_the_smallest_after_any_change(void **state) {
             in[item] = false;
         } else {
             // Few different weights, so that ties are common; the item as second makes the order total.
-            keys[item] = (enf_heap_key){(double)(next_random(&seed) % 40), (int32_t)(next_random(&seed) % 5), item};
+            keys[item] =
+                (enf_heap_key){(double)(next_random(&seed) % 40), (int32_t)(next_random(&seed) % 5), item};
             enf_heap_set(&heap, item, keys[item]);
             in[item] = true;
         }

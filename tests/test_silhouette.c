@@ -19,10 +19,13 @@ static uint64_t next_random(uint64_t *state) {
     return z ^ z >> 31;
 }
 
-static double random_unit(uint64_t *state) { return (double)(next_random(state) >> 11) * 0x1p-53; }
+static double random_unit(uint64_t *state) {
+    return (double)(next_random(state) >> 11) * 0x1p-53;
+}
 
 static void add_outline(enf_silhouette *work, const double (*corners)[2], int count) {
-    for (int i = 0; i < count; ++i) assert_true(enf_silhouette_add(work, corners[i], corners[(i + 1) % count], 1));
+    for (int i = 0; i < count; ++i)
+        assert_true(enf_silhouette_add(work, corners[i], corners[(i + 1) % count], 1));
 }
 
 static double area_of(enf_silhouette *work) {
@@ -81,7 +84,8 @@ static void shared_edges_and_t_junctions_leave_no_gap(void **state) {
         double last[2] = {base[0][0], base[0][1]};
         for (int i = 1; i <= 7; ++i) {
             double at = i / 7.0;
-            double next[2] = {base[0][0] + (base[1][0] - base[0][0]) * at, base[0][1] + (base[1][1] - base[0][1]) * at};
+            double next[2] = {base[0][0] + (base[1][0] - base[0][0]) * at,
+                              base[0][1] + (base[1][1] - base[0][1]) * at};
             if (i == 7) next[0] = base[1][0], next[1] = base[1][1];
             const double part[][2] = {{last[0], last[1]}, {next[0], next[1]}, {apex[0], apex[1]}};
             add_outline(&work, part, 3);
@@ -125,7 +129,8 @@ static polygon cut(const polygon *p, const double a[2], const double b[2], doubl
     return out;
 }
 
-/// Area of what is left of `p` outside the polygons first..last-1, by cutting off what lies outside each of their edges.
+/// Area of what is left of `p` outside the polygons first..last-1, by cutting off what lies outside each of
+/// their edges.
 static double area_outside(polygon p, const polygon *others, int first, int last) {
     if (p.count < 3) return 0;
     if (first == last) return polygon_area(&p);
@@ -141,7 +146,8 @@ static double area_outside(polygon p, const polygon *others, int first, int last
 
 static polygon random_polygon(uint64_t *seed, bool on_lattice) {
     polygon p = {.count = 3 + (int)(next_random(seed) % 3)};
-    double x = random_unit(seed), y = random_unit(seed), r = 0.1 + 0.4 * random_unit(seed), turn = random_unit(seed);
+    double x = random_unit(seed), y = random_unit(seed), r = 0.1 + 0.4 * random_unit(seed),
+           turn = random_unit(seed);
     for (int i = 0; i < p.count; ++i) {
         p.corners[i][0] = x + r * cos(6.283185307179586 * (i + turn) / p.count);
         p.corners[i][1] = y + r * sin(6.283185307179586 * (i + turn) / p.count);
@@ -172,7 +178,8 @@ static void the_area_of_a_union_is_that_of_its_disjoint_parts(void **state) {
         for (int i = 0; i < count; ++i)
             add_outline(&work, (const double(*)[2])polygons[i].corners, polygons[i].count);
         double area = area_of(&work);
-        if (fabs(area - expected) > 1e-12) fail_msg("round %d: %.17g instead of %.17g", round, area, expected);
+        if (fabs(area - expected) > 1e-12)
+            fail_msg("round %d: %.17g instead of %.17g", round, area, expected);
     }
     enf_silhouette_free(&work);
 }
@@ -203,7 +210,10 @@ static void many_needles_through_one_point_are_done(void **state) {
     enum { NEEDLES = 300 };
     for (int i = 0; i < NEEDLES; ++i) {
         double c = cos(3.14159265358979 * i / NEEDLES), s = sin(3.14159265358979 * i / NEEDLES), w = 1e-4;
-        const double needle[][2] = {{-c + s * w, -s - c * w}, {c + s * w, s - c * w}, {c - s * w, s + c * w}, {-c - s * w, -s + c * w}};
+        const double needle[][2] = {{-c + s * w, -s - c * w},
+                                    {c + s * w, s - c * w},
+                                    {c - s * w, s + c * w},
+                                    {-c - s * w, -s + c * w}};
         add_outline(&work, needle, 4);
     }
     double area = area_of(&work);
@@ -214,7 +224,8 @@ static void many_needles_through_one_point_are_done(void **state) {
 static void numbers_that_are_none_do_no_harm(void **state) {
     (void)state;
     enf_silhouette work = {0};
-    const double bad[][2] = {{NAN, 0}, {1, INFINITY}, {-INFINITY, 2}, {0, 0}}, good[][2] = {{0, 0}, {1, 0}, {0, 1}};
+    const double bad[][2] = {{NAN, 0}, {1, INFINITY}, {-INFINITY, 2}, {0, 0}},
+                 good[][2] = {{0, 0}, {1, 0}, {0, 1}};
     add_outline(&work, bad, 4);
     add_outline(&work, good, 3);
     double area;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The 512-bit whole numbers against GMP, with operands of all sizes, long runs of ones and zeros, and sums that cancel.
+// The 512-bit whole numbers against GMP, with operands of all sizes, long runs of ones and zeros, and sums
+// that cancel.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -67,9 +68,13 @@ typedef struct numbers {
     mpz_t a, b, c, expected;
 } numbers;
 
-static void numbers_init(numbers *n) { mpz_inits(n->a, n->b, n->c, n->expected, NULL); }
+static void numbers_init(numbers *n) {
+    mpz_inits(n->a, n->b, n->c, n->expected, NULL);
+}
 
-static void numbers_clear(numbers *n) { mpz_clears(n->a, n->b, n->c, n->expected, NULL); }
+static void numbers_clear(numbers *n) {
+    mpz_clears(n->a, n->b, n->c, n->expected, NULL);
+}
 
 static void setting_keeps_every_128_bit_number(void **unused) {
     (void)unused;
@@ -132,7 +137,8 @@ static void products_are_exact_up_to_512_bits(void **unused) {
     numbers n;
     numbers_init(&n);
     for (long i = 0; i < scaled(1000000); i++) {
-        enf_wide a = random_wide(&state, 7), b = random_wide(&state, 7 - a.size), c = random_wide(&state, 7), result;
+        enf_wide a = random_wide(&state, 7), b = random_wide(&state, 7 - a.size), c = random_wide(&state, 7),
+                 result;
         to_gmp(n.a, &a);
         to_gmp(n.b, &b);
         to_gmp(n.c, &c);

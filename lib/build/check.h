@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Check: every invariant of a compiled world, decided exactly from the world alone, by arithmetic that shares nothing with
-// the stages that built it.
+// Check: every invariant of a compiled world, decided exactly from the world alone, by arithmetic that shares
+// nothing with the stages that built it.
 #ifndef ENF_BUILD_CHECK_H
 #define ENF_BUILD_CHECK_H
 
@@ -24,9 +24,9 @@ typedef struct enf_check_report {
     enf_check_row rows[ENF_CHECK_ROWS_MAX];
 } enf_check_report;
 
-/// Checks a world whose counts and indices are right (enf_file_read or enf_view_check has passed it). ENF_OK: all
-/// invariants hold; ENF_CHECK_FAILED: one does not, the error is report->first; ENF_BAD_INPUT: the file has no exact part;
-/// ENF_NO_RESOURCES: no memory. The report is filled in the first two cases.
+/// Checks a world whose counts and indices are right (enf_file_read or enf_view_check has passed it). ENF_OK:
+/// all invariants hold; ENF_CHECK_FAILED: one does not, the error is report->first; ENF_BAD_INPUT: the file
+/// has no exact part; ENF_NO_RESOURCES: no memory. The report is filled in the first two cases.
 enf_status enf_world_check(const enf_file_view *view, enf_check_report *report, enf_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Planes by Cramer's rule from their points, vertices by Cramer's rule from their planes, both divided by their greatest
-// common divisor. Signs are read off doubles where these are far enough from zero, and computed with GMP otherwise.
+// Planes by Cramer's rule from their points, vertices by Cramer's rule from their planes, both divided by
+// their greatest common divisor. Signs are read off doubles where these are far enough from zero, and
+// computed with GMP otherwise.
 #include "build/check_exact.h"
 
 #include "base/array.h"
@@ -15,8 +16,8 @@ __extension__ typedef unsigned __int128 unsigned_wide;
 
 enum { TERMS = 12 };
 
-/// Relative to the sum of the terms' magnitudes: coefficients and coordinates are off by less than 2^-50 each, and a few
-/// roundings of 2^-53 come on top.
+/// Relative to the sum of the terms' magnitudes: coefficients and coordinates are off by less than 2^-50
+/// each, and a few roundings of 2^-53 come on top.
 static const double near_zero = 0x1p-46;
 
 // ---------------------------------------------------------------------------------------------- tuples
@@ -27,7 +28,8 @@ static mpz_srcptr read_number(const enf_check_exact *exact, const enf_check_tupl
     return mpz_roinit_n(view, exact->limbs + at, tuple->size[i]);
 }
 
-/// Divides four numbers by their greatest common divisor and appends them to the arena. Returns 0 without memory.
+/// Divides four numbers by their greatest common divisor and appends them to the arena. Returns 0 without
+/// memory.
 static bool store(enf_check_exact *exact, mpz_t number[4], enf_check_tuple *tuple) {
     mpz_ptr divisor = exact->term[TERMS - 1];
     mpz_gcd(divisor, number[0], number[1]);
@@ -42,7 +44,8 @@ static bool store(enf_check_exact *exact, mpz_t number[4], enf_check_tuple *tupl
     tuple->first = (int64_t)exact->limb_count;
     for (int i = 0; i < 4; i++) {
         size_t size = mpz_size(number[i]);
-        if (size) memcpy(exact->limbs + exact->limb_count, mpz_limbs_read(number[i]), size * sizeof *exact->limbs);
+        if (size)
+            memcpy(exact->limbs + exact->limb_count, mpz_limbs_read(number[i]), size * sizeof *exact->limbs);
         tuple->size[i] = (int16_t)(mpz_sgn(number[i]) < 0 ? -(int)size : (int)size);
         exact->limb_count += size;
     }
@@ -60,7 +63,8 @@ static uint64_t tuple_hash(const enf_check_exact *exact, const enf_check_tuple *
 
 static bool same_tuple(const enf_check_exact *exact, const enf_check_tuple *a, const enf_check_tuple *b) {
     return memcmp(a->size, b->size, sizeof a->size) == 0 &&
-           memcmp(exact->limbs + a->first, exact->limbs + b->first, tuple_limbs(a) * sizeof *exact->limbs) == 0;
+           memcmp(exact->limbs + a->first, exact->limbs + b->first, tuple_limbs(a) * sizeof *exact->limbs) ==
+               0;
 }
 
 /// Tuples by value; numbers are given out by the owner.
@@ -87,7 +91,8 @@ static int32_t *table_find(const enf_check_exact *exact, const table *table, con
     return &table->slots[slot];
 }
 
-// ---------------------------------------------------------------------------------------------- points and planes
+// ---------------------------------------------------------------------------------------------- points and
+// planes
 
 static int64_t coordinate(const enf_check_exact *exact, int32_t point, int axis) {
     return (int64_t)(exact->view->points[point][axis] / exact->unit);
@@ -106,7 +111,8 @@ static void normal_of(const enf_check_exact *exact, const int32_t points[3], wid
     int64_t u[3], v[3];
     for (int i = 0; i < 3; i++) {
         u[i] = coordinate(exact, points[1], i) - coordinate(exact, points[0], i);
-        v[i] = points[2] >= 0 ? coordinate(exact, points[2], i) - coordinate(exact, points[0], i) : i == -1 - points[2];
+        v[i] = points[2] >= 0 ? coordinate(exact, points[2], i) - coordinate(exact, points[0], i)
+                              : i == -1 - points[2];
     }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -189,7 +195,8 @@ static void cross_planes(enf_check_exact *exact, const int32_t classes[3], mpz_t
     mpz_t view[3][4];
     mpz_srcptr plane[3][4];
     for (int p = 0; p < 3; p++) {
-        for (int i = 0; i < 4; i++) plane[p][i] = read_number(exact, &exact->classes[classes[p]], i, view[p][i]);
+        for (int i = 0; i < 4; i++)
+            plane[p][i] = read_number(exact, &exact->classes[classes[p]], i, view[p][i]);
     }
     mpz_ptr minor = exact->term[4];
     for (int i = 0; i < 4; i++) mpz_set_ui(out[i], 0);
@@ -263,14 +270,16 @@ enf_check_fault enf_check_exact_make(enf_check_exact *exact, const enf_file_view
     if (!allocate(exact)) return ENF_CHECK_FAULT_MEMORY;
     enf_check_fault fault = check_points(exact, which);
     table table = {0};
-    if (fault == ENF_CHECK_FAULT_NONE && !table_make(&table, (size_t)view->plane_count)) fault = ENF_CHECK_FAULT_MEMORY;
+    if (fault == ENF_CHECK_FAULT_NONE && !table_make(&table, (size_t)view->plane_count))
+        fault = ENF_CHECK_FAULT_MEMORY;
     for (int32_t p = 0; fault == ENF_CHECK_FAULT_NONE && p < view->plane_count; p++) {
         *which = p;
         fault = make_plane(exact, &table, p);
     }
     free(table.slots);
     table.slots = NULL;
-    if (fault == ENF_CHECK_FAULT_NONE && !table_make(&table, (size_t)view->vertex_count)) fault = ENF_CHECK_FAULT_MEMORY;
+    if (fault == ENF_CHECK_FAULT_NONE && !table_make(&table, (size_t)view->vertex_count))
+        fault = ENF_CHECK_FAULT_MEMORY;
     for (int32_t v = 0; fault == ENF_CHECK_FAULT_NONE && v < view->vertex_count; v++) {
         *which = v;
         fault = make_vertex(exact, &table, v);
@@ -322,7 +331,9 @@ int enf_check_side(enf_check_exact *exact, int32_t vertex, int32_t plane) {
     return exact->plane_sign[plane] * enf_check_side_of_class(exact, vertex, exact->plane_class[plane]);
 }
 
-static double larger(double a, double b) { return a > b ? a : b; }
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
 
 static int turn_exactly(enf_check_exact *exact, int u, int v, const int32_t corner[3]) {
     mpz_t view[3][3];
@@ -354,7 +365,8 @@ int enf_check_turn(enf_check_exact *exact, int axis, int32_t a, int32_t b, int32
     double size = larger(larger(larger(fabs(p[u]), fabs(p[v])), larger(fabs(q[u]), fabs(q[v]))),
                          larger(fabs(r[u]), fabs(r[v])));
     double slip = 0x1p-48 * size; // of each difference
-    double error = 2 * slip * (fabs(qu) + fabs(qv) + fabs(ru) + fabs(rv) + slip) + 0x1p-50 * (fabs(one) + fabs(two));
+    double error =
+        2 * slip * (fabs(qu) + fabs(qv) + fabs(ru) + fabs(rv) + slip) + 0x1p-50 * (fabs(one) + fabs(two));
     if (fabs(value) > error) return value > 0 ? 1 : -1;
     if (exact->vertex_whole[a] && exact->vertex_whole[b] && exact->vertex_whole[c] && size < 0x1p25)
         return (value > 0) - (value < 0);
@@ -391,7 +403,8 @@ int enf_check_axis(const enf_check_exact *exact, int32_t plane, int *sign) {
     return axis;
 }
 
-// ---------------------------------------------------------------------------------------------- rounded places
+// ---------------------------------------------------------------------------------------------- rounded
+// places
 
 bool enf_check_position_near(enf_check_exact *exact, int32_t vertex, const double position[3]) {
     for (int i = 0; i < 3; i++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The checker's own numbers: planes and vertices of a world as whole numbers in lowest terms (GMP), so that the same plane
-// or place always is the same number, however it was named.
+// The checker's own numbers: planes and vertices of a world as whole numbers in lowest terms (GMP), so that
+// the same plane or place always is the same number, however it was named.
 #ifndef ENF_BUILD_CHECK_EXACT_H
 #define ENF_BUILD_CHECK_EXACT_H
 
@@ -19,17 +19,17 @@ typedef struct enf_check_exact {
     const enf_file_view *view;
     double unit; ///< grid steps
 
-    int32_t *plane_class;  ///< per plane: the geometric plane; equal for planes that coincide
-    int8_t *plane_sign;    ///< +1 or -1: it faces as the class does, or the other way
+    int32_t *plane_class; ///< per plane: the geometric plane; equal for planes that coincide
+    int8_t *plane_sign;   ///< +1 or -1: it faces as the class does, or the other way
     int32_t class_count;
     enf_check_tuple *classes; ///< a, b, c, d: a x + b y + c z + d
     double (*class_near)[4];  ///< the same rounded (2^-52 relative)
     bool *class_whole;        ///< the rounded ones are exact
 
-    int32_t *place; ///< per vertex: the smallest number of the vertices at the same point
-    enf_check_tuple *vertices; ///< x, y, z, w with w > 0
-    double (*near)[3];         ///< x / w and so on, rounded (2^-50 relative)
-    bool *vertex_whole;        ///< the rounded ones are exact
+    int32_t *place;             ///< per vertex: the smallest number of the vertices at the same point
+    enf_check_tuple *vertices;  ///< x, y, z, w with w > 0
+    double (*near)[3];          ///< x / w and so on, rounded (2^-50 relative)
+    bool *vertex_whole;         ///< the rounded ones are exact
     int32_t (*vertex_class)[3]; ///< classes of its planes; -1 for points
 
     mp_limb_t *limbs;
@@ -44,7 +44,8 @@ typedef enum enf_check_fault {
     ENF_CHECK_FAULT_MEMORY,
     ENF_CHECK_FAULT_POINT, ///< *which is a point that is not whole, or equal to the one before it
     ENF_CHECK_FAULT_PLANE, ///< *which is a plane whose points do not span it
-    ENF_CHECK_FAULT_VERTEX ///< *which is a vertex whose planes do not cross in one point, or one without planes
+    ENF_CHECK_FAULT_VERTEX ///< *which is a vertex whose planes do not cross in one point, or one without
+                           ///< planes
 } enf_check_fault;
 
 enf_check_fault enf_check_exact_make(enf_check_exact *exact, const enf_file_view *view, int32_t *which);

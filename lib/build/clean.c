@@ -419,12 +419,13 @@ static enf_status keep_polygons(cleaner *c, const int32_t *order, size_t kept, c
 static enf_status put_in_order(cleaner *c) {
     int32_t *order = enf_array_new(c->pieces.count, sizeof *order);
     int32_t *number = enf_array_new(c->point_count, sizeof *number);
+    c->mesh->polygon_copies = enf_array_new(c->pieces.count, sizeof *c->mesh->polygon_copies);
     enf_status status = ENF_OK;
-    if (!order || !number) {
+    if (!order || !number || !c->mesh->polygon_copies) {
         status = enf_fail_memory(c->error, "the polygons");
     } else {
         size_t kept = 0;
-        status = enf_pieces_sort(&c->pieces, order, &kept, c->error);
+        status = enf_pieces_sort(&c->pieces, order, c->mesh->polygon_copies, &kept, c->error);
         if (status == ENF_OK)
             status = enf_pieces_count_two_sided(&c->pieces, order, kept, &c->mesh->two_sided, c->error);
         if (status == ENF_OK) status = reject_duplicates(c, order, kept);
@@ -491,6 +492,7 @@ void enf_mesh_free(enf_mesh *mesh) {
     free(mesh->polygon_corner);
     free(mesh->corners);
     free(mesh->polygon_source);
+    free(mesh->polygon_copies);
     free(mesh->polygon_plane);
     free(mesh->details);
     free(mesh->spawns);

@@ -38,8 +38,9 @@ typedef struct enf_mesh {
     int64_t *polygon_corner; ///< polygon_count + 1 offsets
     int32_t *corners;        ///< point indices; each polygon starts at its smallest index
     int32_t *polygon_source; ///< soup polygon it came from
-    int32_t (
-        *polygon_plane)[3]; ///< three of its corners that span its plane best, in the polygon's orientation
+    int32_t *polygon_copies; ///< how many equal polygons it stands for, itself included
+    /// Three of its corners that span its plane best, in the polygon's orientation.
+    int32_t (*polygon_plane)[3];
 
     size_t detail_count;
     int32_t *details; ///< soup polygons that are detail: drawn, not cutting

@@ -40,8 +40,8 @@ enf_status enf_stop_parse(const char *text, enf_stop *stop, enf_error *error) {
         stop->rule = ENF_STOP_CELLS;
         stop->cells = strtoll(text + 6, &end, 10);
         if (end != text + 6 && *end == 0 && errno == 0 && stop->cells >= 1) return ENF_OK;
-        return enf_fail(error, ENF_BAD_USAGE, "stop rule '%s': the number of cells must be a whole number, 1 or more",
-                        text);
+        return enf_fail(error, ENF_BAD_USAGE,
+                        "stop rule '%s': the number of cells must be a whole number, 1 or more", text);
     }
     return enf_fail(error, ENF_BAD_USAGE, "unknown stop rule '%s'; use auto, weight=W or cells=N", text);
 }
@@ -78,9 +78,12 @@ static void number_cells(enf_decimation *out, int32_t graph_cells) {
 
 static bool is_done(const enf_stop *stop, int64_t cells, double weight) {
     switch (stop->rule) {
-    case ENF_STOP_WEIGHT: return weight >= stop->weight;
-    case ENF_STOP_CELLS: return cells <= stop->cells;
-    case ENF_STOP_AUTO: break;
+    case ENF_STOP_WEIGHT:
+        return weight >= stop->weight;
+    case ENF_STOP_CELLS:
+        return cells <= stop->cells;
+    case ENF_STOP_AUTO:
+        break;
     }
     return false;
 }
@@ -118,9 +121,9 @@ static enf_status collapse_all(task *task, enf_decimation *out, enf_error *error
     }
 }
 
-enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop, double unit,
-                              bool (*progress)(void *user, double fraction), void *user, enf_decimation *out,
-                              enf_error *error) {
+enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop,
+                              double unit, bool (*progress)(void *user, double fraction), void *user,
+                              enf_decimation *out, enf_error *error) {
     *out = (enf_decimation){0};
     if ((int)heuristic < 0 || heuristic >= ENF_HEURISTIC_COUNT || !(unit > 0))
         return enf_fail(error, ENF_BAD_USAGE, "decimate: heuristic %d, unit %g", (int)heuristic, unit);

@@ -6,7 +6,7 @@
 #include "build/graph.h"
 
 typedef enum enf_heuristic {
-    ENF_HEURISTIC_ASPECT,        ///< largest projected area of the two cells / area of all portals between them
+    ENF_HEURISTIC_ASPECT, ///< largest projected area of the two cells / area of all portals between them
     ENF_HEURISTIC_ASPECT_SCALED, ///< the same divided by the square root of that projected area
     ENF_HEURISTIC_COUNT
 } enf_heuristic;
@@ -32,9 +32,9 @@ typedef struct enf_collapse {
 } enf_collapse;
 
 typedef struct enf_decimation {
-    int32_t cell_count;     ///< cells left
-    int32_t *cell_of;       ///< for each cell of the graph, the number of the cell it went into, 0..cell_count-1;
-                            ///< numbered by the smallest fine cell in each
+    int32_t cell_count; ///< cells left
+    int32_t *cell_of;   ///< for each cell of the graph, the number of the cell it went into, 0..cell_count-1;
+                        ///< numbered by the smallest fine cell in each
     enf_collapse *collapses; ///< every collapse done, in order
     size_t collapse_count;
     double next_weight; ///< weight of the portal that would have gone next; infinity if none
@@ -43,10 +43,11 @@ typedef struct enf_decimation {
 
 void enf_decimation_free(enf_decimation *decimation);
 
-/// `unit`: world units per graph unit. aspect-scaled is not scale free, so weights are always computed and compared in world units.
-/// `progress` may be null; called now and then with 0..1; returning false cancels (ENF_NO_RESOURCES, "cancelled").
-enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop, double unit,
-                              bool (*progress)(void *user, double fraction), void *user,
+/// `unit`: world units per graph unit. aspect-scaled is not scale free, so weights are always computed and
+/// compared in world units. `progress` may be null; called now and then with 0..1; returning false cancels
+/// (ENF_NO_RESOURCES, "cancelled").
+enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop,
+                              double unit, bool (*progress)(void *user, double fraction), void *user,
                               enf_decimation *out, enf_error *error);
 
 #endif

@@ -27,7 +27,8 @@ static const entry entries[] = {
     {"cavern", "six irregular rooms, seven flaring passages, no axis-aligned face", enf_gen_cavern, false},
     {"furnished", "a room with a perturbed wall, a table and chairs, and a small room next door",
      enf_gen_furnished, false},
-    {"office", "floors=F storeys of rooms=R rooms each, corridors, stairs, windows; detail=N splits every wall",
+    {"office",
+     "floors=F storeys of rooms=R rooms each, corridors, stairs, windows; detail=N splits every wall",
      enf_gen_office, true},
     {"post", "a square post with four rooms around it", enf_gen_post_world, false},
 };
@@ -39,8 +40,8 @@ enum {
     DETAIL_MAX = 100
 };
 
-static const double number_max = 1e12;          // any length, factor or angle
-static const double office_quads_max = 4e8;     // floors * rooms * detail^2; 31-bit indices end soon after
+static const double number_max = 1e12;     // any length, factor or angle
+static const double office_size_max = 1e6; // floors * rooms * detail^2; about 108 triangles each
 
 const char *enf_gen_list(size_t index, const char **description) {
     if (index >= ENTRY_COUNT) return NULL;
@@ -54,7 +55,7 @@ static const entry *find_entry(const char *name) {
     return NULL;
 }
 
-// Reads between `least` and 3 numbers separated by commas; returns how many, or 0.
+// Reads one to three numbers separated by commas; returns how many, or 0.
 static int read_numbers(const char *text, double numbers[3]) {
     for (int count = 0; count < 3; count++) {
         char *end;
@@ -133,7 +134,8 @@ static enf_status read_setting(const char *setting, const entry *world, enf_gen_
     if (key_is(setting, "noise")) return read_noise(setting, value, &options->noise, error);
     if (key_is(setting, "seed")) return read_seed(setting, value, &options->seed, error);
     if (key_is(setting, "rotate"))
-        return read_vector(setting, value, "rotate=AX,AY,AZ in degrees, at most 1e12", options->rotate, error);
+        return read_vector(setting, value, "rotate=AX,AY,AZ in degrees, at most 1e12", options->rotate,
+                           error);
     if (key_is(setting, "translate"))
         return read_vector(setting, value, "translate=X,Y,Z, at most 1e12", options->translate, error);
     if (world->sized && key_is(setting, "floors"))
@@ -142,13 +144,16 @@ static enf_status read_setting(const char *setting, const entry *world, enf_gen_
         return read_count(setting, value, ROOMS_MAX, &options->rooms, error);
     if (world->sized && key_is(setting, "detail"))
         return read_count(setting, value, DETAIL_MAX, &options->detail, error);
-    return enf_fail(error, ENF_BAD_USAGE,
-                    "gen: '%.100s' is not a setting of %s; it takes %sscale=, noise=, seed=, rotate=, translate=",
-                    setting, world->name, world->sized ? "floors=, rooms=, detail=, " : "");
+    return enf_fail(
+        error, ENF_BAD_USAGE,
+        "gen: '%.100s' is not a setting of %s; it takes %sscale=, noise=, seed=, rotate=, translate=",
+        setting, world->name, world->sized ? "floors=, rooms=, detail=, " : "");
 }
 
 // The length of the key, for finding the same key twice.
-static size_t key_length(const char *setting) { return strcspn(setting, "="); }
+static size_t key_length(const char *setting) {
+    return strcspn(setting, "=");
+}
 
 static enf_status read_settings(const char *const *settings, size_t count, const entry *world,
                                 enf_gen_options *options, enf_error *error) {
@@ -158,15 +163,16 @@ static enf_status read_settings(const char *const *settings, size_t count, const
         size_t length = key_length(settings[i]);
         for (size_t j = 0; j < i; j++)
             if (key_length(settings[j]) == length && strncmp(settings[i], settings[j], length) == 0)
-                return enf_fail(error, ENF_BAD_USAGE, "gen: '%.*s' is given twice; leave one out", (int)length,
-                                settings[i]);
+                return enf_fail(error, ENF_BAD_USAGE, "gen: '%.*s' is given twice; leave one out",
+                                (int)length, settings[i]);
     }
-    double quads = (double)options->floors * (double)options->rooms * (double)options->detail *
-                   (double)options->detail;
-    if (quads * 60.0 > office_quads_max)
-        return enf_fail(error, ENF_BAD_USAGE,
-                        "gen: floors * rooms * detail^2 is %.0f, at most %.0f is possible; choose smaller numbers",
-                        quads, office_quads_max / 60.0);
+    double size =
+        (double)options->floors * (double)options->rooms * (double)options->detail * (double)options->detail;
+    if (size > office_size_max)
+        return enf_fail(
+            error, ENF_BAD_USAGE,
+            "gen: floors * rooms * detail^2 is %.0f, at most %.0f is possible; choose smaller numbers", size,
+            office_size_max);
     return ENF_OK;
 }
 

@@ -7,21 +7,22 @@
 
 #include "enfilade/base.h"
 
-/// Writes the world `name` as OBJ text to `out`. Every room has a comment "# spawn x y z room-N" with a point in
-/// its air; polygons are triangles whose front (counter-clockwise) faces the air; shells have no thickness and no
-/// T-junctions, so that noise and rotation open no cracks.
+/// Writes the world `name` as OBJ text to `out`. Every room has a comment "# spawn x y z room-N" with a point
+/// in its air; polygons are triangles whose front (counter-clockwise) faces the air; shells have no thickness
+/// and no T-junctions, so that noise and rotation open no cracks.
 ///
 /// `settings` are "key=value" texts, each key at most once:
 ///   scale=S | scale=SX,SY,SZ   default 1; not 0; a mirroring scale turns the triangles over
-///   noise=A                    default 0; moves every distinct vertex by a pseudo-random vector of length <= A
-///   seed=N                     default 1; picks the noise
-///   rotate=AX,AY,AZ            degrees about x, then y, then z
-///   translate=X,Y,Z
-/// applied in this order (so A is in world units); spawns are transformed, without the noise. World `office` also takes
-///   floors=F (default 2), rooms=R (per floor, default 6), detail=N (each rectangle becomes N x N, default 1).
+///   noise=A                    default 0; moves every distinct vertex by a pseudo-random vector of length <=
+///   A seed=N                     default 1; picks the noise rotate=AX,AY,AZ            degrees about x, then
+///   y, then z translate=X,Y,Z
+/// applied in this order (so A is in world units); spawns are transformed, without the noise. World `office`
+/// also takes
+///   floors=F (default 2), rooms=R (per floor, default 6), detail=N (each rectangle becomes N x N, default
+///   1).
 ///
-/// ENF_BAD_USAGE for an unknown name or key or a bad value, with words naming what is allowed; ENF_NO_RESOURCES
-/// when memory runs out or `out` can't be written.
+/// ENF_BAD_USAGE for an unknown name or key or a bad value, with words naming what is allowed;
+/// ENF_NO_RESOURCES when memory runs out or `out` can't be written.
 enf_status enf_gen_write(const char *name, const char *const *settings, size_t setting_count, FILE *out,
                          enf_error *error);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cavern of the thesis (4.3.4): six irregular rooms on a bent 2 x 3 grid, and seven passages between neighbours
-// that flare into them. Like the thesis' model it is a plan given a height, so that the Delaunay cells are
-// three to each triangle of the plan; then all of it is tilted, so that no face is axis-aligned. The plan stands on a grid
-// and the tilt is a rotation by whole numbers (from the quaternion 10 + i - j + k): no rounding takes part, floor and
-// ceiling stay exactly flat.
+// The cavern of the thesis (4.3.4): six irregular rooms on a bent 2 x 3 grid, and seven passages between
+// neighbours that flare into them. Like the thesis' model it is a plan given a height, so that the Delaunay
+// cells are three to each triangle of the plan; then all of it is tilted, so that no face is axis-aligned.
+// The plan stands on a grid and the tilt is a rotation by whole numbers (from the quaternion 10 + i - j + k):
+// no rounding takes part, floor and ceiling stay exactly flat.
 #include <math.h>
 
 #include "build/gen_world.h"
@@ -14,16 +14,17 @@ enum {
     MOUTHS_MAX = 3,  // of a room
     ARC_MAX = 24,    // points of a room's wall from one mouth to the next
     SIDE_POINTS = 5, // of a passage's side, between its ends
-    HEIGHT = 160,    // in grid steps, like everything in the plan
+    HEIGHT = 240,    // in grid steps, like everything in the plan
 };
 
-static const double steps_per_unit = 40.0;  // of the plan
-static const double unit_of_tilt = 4096.0;  // the tilt stretches by 103, so a plan unit becomes 1.006 world units
+static const double steps_per_unit = 40.0; // of the plan
+static const double unit_of_tilt =
+    4096.0; // the tilt stretches by 103, so a plan unit becomes 1.006 world units
 static const double tilt[3][3] = {{99, -22, -18}, {18, 99, -22}, {22, 18, 99}};
-static const double mouth_half = 21.0;      // degrees of a room's rim
+static const double mouth_half = 21.0;        // degrees of a room's rim
 static const double degrees_per_point = 13.5; // of the rim
-static const double dent = 0.07;            // of the radius
-static const double narrowing[SIDE_POINTS] = {0.70, 0.46, 0.38, 0.46, 0.70};
+static const double dent = 0.07;              // of the radius
+static const double narrowing[SIDE_POINTS] = {0.60, 0.30, 0.15, 0.30, 0.60};
 static const uint64_t dent_seed = 1;
 
 typedef struct room {
@@ -52,7 +53,8 @@ typedef struct passage {
 } passage;
 
 static enf_gen_post add_post(enf_gen_world *world, double x, double y) {
-    return enf_gen_plan_post(world, floor(x * steps_per_unit + 0.5), floor(y * steps_per_unit + 0.5), 0, HEIGHT);
+    return enf_gen_plan_post(world, floor(x * steps_per_unit + 0.5), floor(y * steps_per_unit + 0.5), 0,
+                             HEIGHT);
 }
 
 // A point of the rim, dented at random.
@@ -64,7 +66,8 @@ static enf_gen_post rim_post(enf_gen_world *world, const room *room, double degr
     return add_post(world, room->x + radius * cosine, room->y + radius * sine);
 }
 
-static void add_room(enf_gen_world *world, const room *room, passage passages[PASSAGE_COUNT], uint64_t *state) {
+static void add_room(enf_gen_world *world, const room *room, passage passages[PASSAGE_COUNT],
+                     uint64_t *state) {
     enf_gen_post posts[MOUTHS_MAX * ARC_MAX];
     int count = 0;
     for (int m = 0; m < room->mouth_count; m++) {
@@ -78,14 +81,14 @@ static void add_room(enf_gen_world *world, const room *room, passage passages[PA
         passage *left = &passages[room->mouths[m].passage], *right = &passages[room->mouths[next].passage];
         left->ends[left->end_count][1] = posts[first];
         right->ends[right->end_count][0] = posts[count - 1];
-
     }
     for (int m = 0; m < room->mouth_count; m++) passages[room->mouths[m].passage].end_count++;
     enf_gen_plan_floor(world, posts, count);
 }
 
 // The posts between the two ends of a passage's side, given its other side, which is its mirror image.
-static enf_gen_post side_post(enf_gen_world *world, const enf_gen_post side[2], const enf_gen_post other[2], int i) {
+static enf_gen_post side_post(enf_gen_world *world, const enf_gen_post side[2], const enf_gen_post other[2],
+                              int i) {
     double t = (i + 1) / (SIDE_POINTS + 1.0), at[2];
     for (int a = 0; a < 2; a++) {
         double from = world->points[side[0].floor][a], from_other = world->points[other[0].floor][a];

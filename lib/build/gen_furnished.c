@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The furnished room of the thesis (4.3.5): one wall finely tessellated and perturbed, a table and two chairs,
-// made of closed boxes that stand on the floor; a doorway leads to a small second room.
+// The furnished room of the thesis (4.3.5): one wall finely tessellated and perturbed, a table and two
+// chairs, made of closed boxes that stand on the floor; a doorway leads to a small second room.
 #include "build/gen_world.h"
 
 enum { ALONG = 12, UP = 6 }; // rectangles of the perturbed wall
@@ -20,8 +20,8 @@ static void make_wall_points(enf_gen_world *world, wall_points points) {
             bool rim = i == 0 || i == ALONG || k == 0 || k == UP;
             double shift = rim ? 0.0 : perturbation * enf_gen_random_unit(&state);
             points[k][i] =
-                enf_gen_point(world, enf_gen_round(main_size[0] * i / ALONG), enf_gen_round(main_size[1] + shift),
-                              enf_gen_round(main_size[2] * k / UP));
+                enf_gen_point(world, enf_gen_round(main_size[0] * i / ALONG),
+                              enf_gen_round(main_size[1] + shift), enf_gen_round(main_size[2] * k / UP));
         }
 }
 
@@ -86,19 +86,20 @@ static void add_side_room(enf_gen_world *world, const int32_t door[4]) {
     enf_gen_quad(world, p[3], p[1], p[5], p[7]); // east
 }
 
-static void box(enf_gen_world *world, double x, double y, double z, double size_x, double size_y, double size_z) {
+static void box(enf_gen_world *world, double x, double y, double z, double size_x, double size_y,
+                double size_z) {
     const double low[3] = {enf_gen_round(x), enf_gen_round(y), enf_gen_round(z)};
     const double high[3] = {enf_gen_round(x + size_x), enf_gen_round(y + size_y), enf_gen_round(z + size_z)};
     enf_gen_box(world, low, high);
 }
 
 // A board on four legs, which stand `inset` inside its edges.
-static void board_on_legs(enf_gen_world *world, double x, double y, double size_x, double size_y, double under,
-                          double leg, double inset) {
+static void board_on_legs(enf_gen_world *world, double x, double y, double size_x, double size_y,
+                          double under, double leg, double inset) {
     box(world, x, y, under, size_x, size_y, 0.04);
     for (int i = 0; i < 4; i++)
-        box(world, i & 1 ? x + size_x - inset - leg : x + inset, i & 2 ? y + size_y - inset - leg : y + inset, 0,
-            leg, leg, under);
+        box(world, i & 1 ? x + size_x - inset - leg : x + inset, i & 2 ? y + size_y - inset - leg : y + inset,
+            0, leg, leg, under);
 }
 
 static void add_chair(enf_gen_world *world, int number, double x, double y, bool back_north) {

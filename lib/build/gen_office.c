@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An office block of any size. Space is cut into boxes by planes across each axis; some boxes are air, and every
-// rectangle between air and not-air is written, so that nothing can leak and every edge is shared. The time
-// is proportional to what is written. Stairs are closed solids that reach a little into floor and wall.
+// An office block of any size. Space is cut into boxes by planes across each axis; some boxes are air, and
+// every rectangle between air and not-air is written, so that nothing can leak and every edge is shared. The
+// time is proportional to what is written. Stairs are closed solids that reach a little into floor and wall.
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -41,7 +41,7 @@ static void carve(office *office, int32_t group, const int64_t low[3], const int
             for (int64_t x = low[0]; x <= high[0]; x++) office->group[cell_index(office, x, y, z)] = group;
 }
 
-#define CARVE(office, group, x0, x1, y0, y1, z0, z1)                                                         \
+#define CARVE(office, group, x0, x1, y0, y1, z0, z1) \
     carve(office, group, (const int64_t[3]){x0, y0, z0}, (const int64_t[3]){x1, y1, z1})
 
 // The cells' widths become planes, kept to thousandths.
@@ -53,7 +53,7 @@ static void make_planes(office *office) {
     const double wall = wall_width, *depths = room_depths;
     const double start[6] = {wall, stairs_width, stairs_width, wall, corridor_width, wall};
     const double column[4] = {room_widths[0], room_widths[1], room_widths[2], wall};
-    const double block[10] = {depths[0], depths[1], depths[2], wall, corridor_width,
+    const double block[10] = {depths[0], depths[1], depths[2], wall,      corridor_width,
                               wall,      depths[0], depths[1], depths[2], wall};
     int64_t at = 0;
     office->planes[0][0] = office->planes[1][0] = 0.0;
@@ -183,7 +183,8 @@ typedef struct flight {
 
 static flight make_flight(const office *office, int64_t floor) {
     flight flight;
-    const double base = office->planes[2][1 + FLOOR_LAYERS * floor], rise = office->planes[2][FLOOR_LAYERS + 1] / STEPS;
+    const double base = office->planes[2][1 + FLOOR_LAYERS * floor],
+                 rise = office->planes[2][FLOOR_LAYERS + 1] / STEPS;
     const double start = office->planes[1][2] - stairs_foot, end = office->planes[1][3];
     flight.x[0] = enf_gen_round(office->planes[0][1] - stairs_overlap);
     flight.x[1] = enf_gen_round(office->planes[0][2] - stairs_overlap);
@@ -197,7 +198,8 @@ static flight make_flight(const office *office, int64_t floor) {
     return flight;
 }
 
-// From floor `floor` to the next. The first step rises out of the floor, the last tread ends in the next slab.
+// From floor `floor` to the next. The first step rises out of the floor, the last tread ends in the next
+// slab.
 static void add_stairs(const office *office, enf_gen_world *world, int64_t floor) {
     const flight flight = make_flight(office, floor);
     enf_gen_group(world, "stairs-%d", (int)floor + 1);

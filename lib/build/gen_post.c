@@ -5,7 +5,8 @@
 
 static const double height = 3.0;
 static const double half_post = 1.0;
-static const double fin[4][2] = {{4.5, 4.1}, {2.0, 1.7}, {1.7, 2.0}, {4.1, 4.5}}; // counter-clockwise, north-east
+static const double fin[4][2] = {
+    {4.5, 4.1}, {2.0, 1.7}, {1.7, 2.0}, {4.1, 4.5}}; // counter-clockwise, north-east
 
 // A corner of the plan, turned by quarters of a circle.
 static enf_gen_post corner(enf_gen_world *world, double x, double y, int quarters) {
@@ -23,8 +24,12 @@ void enf_gen_post_world(enf_gen_world *world, const enf_gen_options *options) {
     for (int q = 0; q < 4; q++) {
         enf_gen_group(world, "room-%d", q + 1);
         const enf_gen_post room[6] = {
-            corner(world, half_post, half_post, q + 3), fin_corner(world, 2, q + 3), fin_corner(world, 3, q + 3),
-            fin_corner(world, 0, q), fin_corner(world, 1, q), corner(world, half_post, half_post, q),
+            corner(world, half_post, half_post, q + 3),
+            fin_corner(world, 2, q + 3),
+            fin_corner(world, 3, q + 3),
+            fin_corner(world, 0, q),
+            fin_corner(world, 1, q),
+            corner(world, half_post, half_post, q),
         };
         enf_gen_plan_floor(world, room, 6);
         enf_gen_plan_walls(world, room + 1, 4);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The four-room worlds of the thesis (4.3.1 - 4.3.3): four rooms in a ring whose walls do not line up, joined by
-// four short corridors as high as the rooms. The plan is a 4 x 4 grid per room; the fewest triangles use its
-// outline, the tessellated world all of it.
+// The four-room worlds of the thesis (4.3.1 - 4.3.3): four rooms in a ring whose walls do not line up, joined
+// by four short corridors as high as the rooms. The plan is a 4 x 4 grid per room; the fewest triangles use
+// its outline, the tessellated world all of it.
 #include "build/gen_world.h"
 
 enum { ROOM_COUNT = 4, BREAKS = 5, LEVELS = 2, PLAIN_POINTS = 16 };
 
 static const double level[LEVELS] = {0.0, 3.0};
 
-/// A room in plan. It has one door in a wall across x, from y[door_y] to y[door_y + 1], and one across y, alike.
+/// A room in plan. It has one door in a wall across x, from y[door_y] to y[door_y + 1], and one across y,
+/// alike.
 typedef struct room {
     double x[BREAKS], y[BREAKS];
     int door_x, door_y;
@@ -36,14 +37,23 @@ static int32_t grid_point(enf_gen_world *world, const room *room, int i, int j, 
     return enf_gen_point(world, room->x[i], room->y[j], level[up]);
 }
 
-// The grid's rim, counter-clockwise from above: 16 points, of which number k and k + 1 bound a stretch of wall.
+// The grid's rim, counter-clockwise from above: 16 points, of which number k and k + 1 bound a stretch of
+// wall.
 static void rim(int k, int *i, int *j) {
     const int side = BREAKS - 1, along = k % side;
     switch (k / side % 4) {
-    case 0: *i = along, *j = 0; break;
-    case 1: *i = side, *j = along; break;
-    case 2: *i = side - along, *j = side; break;
-    default: *i = 0, *j = side - along; break;
+    case 0:
+        *i = along, *j = 0;
+        break;
+    case 1:
+        *i = side, *j = along;
+        break;
+    case 2:
+        *i = side - along, *j = side;
+        break;
+    default:
+        *i = 0, *j = side - along;
+        break;
     }
 }
 
@@ -51,14 +61,20 @@ static void rim(int k, int *i, int *j) {
 static bool is_door(const room *room, int k) {
     const int side = BREAKS - 1, along = k % side;
     switch (k / side % 4) {
-    case 0: return !room->north && along == room->door_x;
-    case 1: return room->east && along == room->door_y;
-    case 2: return room->north && side - 1 - along == room->door_x;
-    default: return !room->east && side - 1 - along == room->door_y;
+    case 0:
+        return !room->north && along == room->door_x;
+    case 1:
+        return room->east && along == room->door_y;
+    case 2:
+        return room->north && side - 1 - along == room->door_x;
+    default:
+        return !room->east && side - 1 - along == room->door_y;
     }
 }
 
-static bool is_corner(int k) { return k % (BREAKS - 1) == 0; }
+static bool is_corner(int k) {
+    return k % (BREAKS - 1) == 0;
+}
 
 // One stretch of wall from rim point k to rim point `end`; its front faces the room.
 static void wall(enf_gen_world *world, const room *room, int k, int end) {

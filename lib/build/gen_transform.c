@@ -6,7 +6,9 @@
 
 #include "build/gen_world.h"
 
-double enf_gen_round(double value) { return floor(value * 1000.0 + 0.5) / 1000.0 + 0.0; }
+double enf_gen_round(double value) {
+    return floor(value * 1000.0 + 0.5) / 1000.0 + 0.0;
+}
 
 // Taylor series about 0 for |radians| <= pi/4: the rest after eight terms is below 2^-60.
 static double series(double start, int first, double radians) {
@@ -26,10 +28,18 @@ void enf_gen_sine_cosine(double degrees, double *sine, double *cosine) {
     double radians = (turned - 90.0 * quarter) * 0.017453292519943295;
     double s = series(radians, 1, radians), c = series(1.0, 0, radians);
     switch (quarter & 3) {
-    case 0: *sine = s, *cosine = c; break;
-    case 1: *sine = c, *cosine = -s; break;
-    case 2: *sine = -s, *cosine = -c; break;
-    default: *sine = -c, *cosine = s; break;
+    case 0:
+        *sine = s, *cosine = c;
+        break;
+    case 1:
+        *sine = c, *cosine = -s;
+        break;
+    case 2:
+        *sine = -s, *cosine = -c;
+        break;
+    default:
+        *sine = -c, *cosine = s;
+        break;
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The container behind the test worlds: points shared by exact coordinates, triangles, boxes, tubes, polygons.
-// Polygons are cut by clipping ears (Meisters 1975), the best shaped ear first.
+// The container behind the test worlds: points shared by exact coordinates, triangles, boxes, tubes,
+// polygons. Polygons are cut by clipping ears (Meisters 1975), the best shaped ear first.
 #include "build/gen_world.h"
 
 #include <stdarg.h>
@@ -27,7 +27,9 @@ static uint64_t mix(uint64_t z) {
     return z ^ (z >> 31);
 }
 
-uint64_t enf_gen_random(uint64_t *state) { return mix(*state += UINT64_C(0x9e3779b97f4a7c15)); }
+uint64_t enf_gen_random(uint64_t *state) {
+    return mix(*state += UINT64_C(0x9e3779b97f4a7c15));
+}
 
 double enf_gen_random_unit(uint64_t *state) {
     return (double)(enf_gen_random(state) >> 11) * 0x1p-52 - 1.0;
@@ -147,10 +149,11 @@ static double length_squared(const double a[2], const double b[2]) {
     return (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]);
 }
 
-// How well shaped the ear at corner `i` is (area over the sum of squared sides), or 0 if it is none: flat, turning
-// the wrong way, or touched by another corner.
+// How well shaped the ear at corner `i` is (area over the sum of squared sides), or 0 if it is none: flat,
+// turning the wrong way, or touched by another corner.
 static double ear_quality(double (*flat)[2], const int *ring, int count, int i) {
-    const double *a = flat[ring[(i + count - 1) % count]], *b = flat[ring[i]], *c = flat[ring[(i + 1) % count]];
+    const double *a = flat[ring[(i + count - 1) % count]], *b = flat[ring[i]],
+                 *c = flat[ring[(i + 1) % count]];
     double area = turn(a, b, c);
     if (!(area > 0)) return 0;
     for (int j = 0; j < count; j++) {

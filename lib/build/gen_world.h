@@ -45,15 +45,16 @@ void enf_gen_triangle(enf_gen_world *world, int32_t a, int32_t b, int32_t c);
 void enf_gen_triangle_in(enf_gen_world *world, int32_t group, int32_t a, int32_t b, int32_t c);
 void enf_gen_quad(enf_gen_world *world, int32_t a, int32_t b, int32_t c, int32_t d);
 
-/// A simple polygon of at most 64 corners, flat across `axis` (0 x, 1 y, 2 z), cut into triangles that use every
-/// corner (also those on a straight side). Corners counter-clockwise seen from the front, which is the side
-/// that `facing` (+1 or -1) names along the axis.
+/// A simple polygon of at most 64 corners, flat across `axis` (0 x, 1 y, 2 z), cut into triangles that use
+/// every corner (also those on a straight side). Corners counter-clockwise seen from the front, which is the
+/// side that `facing` (+1 or -1) names along the axis.
 void enf_gen_polygon(enf_gen_world *world, int axis, int facing, const int32_t *corners, size_t count);
 
 /// A closed box, fronts outward.
 void enf_gen_box(enf_gen_world *world, const double low[3], const double high[3]);
 
-/// Walls between two rings of `count` points, fronts inward: ring `a` is counter-clockwise seen from ring `b`.
+/// Walls between two rings of `count` points, fronts inward: ring `a` is counter-clockwise seen from ring
+/// `b`.
 void enf_gen_tube(enf_gen_world *world, const int32_t *a, const int32_t *b, size_t count);
 
 /// A corner of a plan: its points in the floor and in the ceiling.

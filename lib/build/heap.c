@@ -28,9 +28,13 @@ void enf_heap_free(enf_heap *heap) {
     *heap = (enf_heap){0};
 }
 
-bool enf_heap_has(const enf_heap *heap, int32_t item) { return heap->places[item] >= 0; }
+bool enf_heap_has(const enf_heap *heap, int32_t item) {
+    return heap->places[item] >= 0;
+}
 
-int32_t enf_heap_top(const enf_heap *heap) { return heap->count > 0 ? heap->items[0] : -1; }
+int32_t enf_heap_top(const enf_heap *heap) {
+    return heap->count > 0 ? heap->items[0] : -1;
+}
 
 bool enf_heap_key_less(enf_heap_key a, enf_heap_key b) {
     if (a.weight != b.weight) return a.weight < b.weight;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An indexed binary heap: numbered items, the one with the smallest key on top, and the key of any item can be
-// raised or lowered where it stands (Cormen et al., Introduction to Algorithms, chapter 6).
+// An indexed binary heap: numbered items, the one with the smallest key on top, and the key of any item can
+// be raised or lowered where it stands (Cormen et al., Introduction to Algorithms, chapter 6).
 #ifndef ENF_BUILD_HEAP_H
 #define ENF_BUILD_HEAP_H
 
@@ -13,10 +13,10 @@ typedef struct enf_heap_key {
 } enf_heap_key;
 
 typedef struct enf_heap {
-    int32_t count;     ///< items in the heap
-    int32_t capacity;  ///< items are numbered 0..capacity-1
-    int32_t *items;    ///< the heap: the children of place i are at 2i+1 and 2i+2
-    int32_t *places;   ///< for each item its place, or -1 when it is not in the heap
+    int32_t count;      ///< items in the heap
+    int32_t capacity;   ///< items are numbered 0..capacity-1
+    int32_t *items;     ///< the heap: the children of place i are at 2i+1 and 2i+2
+    int32_t *places;    ///< for each item its place, or -1 when it is not in the heap
     enf_heap_key *keys; ///< for each item its key
 } enf_heap;
 

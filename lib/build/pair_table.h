@@ -16,8 +16,8 @@ typedef struct enf_pair_table {
 bool enf_pair_table_create(enf_pair_table *table, size_t capacity);
 void enf_pair_table_free(enf_pair_table *table);
 
-/// Where the value of (a, b) = (b, a) is kept; it reads -1 when the pair is new. The caller stores a value >= 0 there
-/// before the next call, except that a -1 may be left at -1.
+/// Where the value of (a, b) = (b, a) is kept; it reads -1 when the pair is new. The caller stores a value >=
+/// 0 there before the next call, except that a -1 may be left at -1.
 int32_t *enf_pair_table_at(enf_pair_table *table, int32_t a, int32_t b);
 
 /// Takes a pair out; nothing happens when it is not in.

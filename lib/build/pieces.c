@@ -56,7 +56,8 @@ static int compare_keys(const void *left, const void *right, void *pieces) {
     return order ? order : (a->piece > b->piece) - (a->piece < b->piece);
 }
 
-enf_status enf_pieces_sort(const enf_pieces *pieces, int32_t *order, size_t *kept, enf_error *error) {
+enf_status enf_pieces_sort(const enf_pieces *pieces, int32_t *order, int32_t *copies, size_t *kept,
+                           enf_error *error) {
     sort_key *keys = enf_array_new(pieces->count, sizeof *keys);
     if (!keys) return enf_fail_memory(error, "sorting the polygons");
     for (size_t i = 0; i < pieces->count; i++) {
@@ -65,9 +66,13 @@ enf_status enf_pieces_sort(const enf_pieces *pieces, int32_t *order, size_t *kep
     }
     qsort_r(keys, pieces->count, sizeof *keys, compare_keys, (void *)pieces);
     *kept = 0;
-    for (size_t i = 0; i < pieces->count; i++)
-        if (*kept == 0 || compare_pieces(pieces, order[*kept - 1], keys[i].piece) != 0)
-            order[(*kept)++] = keys[i].piece;
+    for (size_t i = 0; i < pieces->count; i++) {
+        if (*kept == 0 || compare_pieces(pieces, order[*kept - 1], keys[i].piece) != 0) {
+            order[*kept] = keys[i].piece;
+            copies[(*kept)++] = 0;
+        }
+        copies[*kept - 1]++;
+    }
     free(keys);
     return ENF_OK;
 }

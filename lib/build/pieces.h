@@ -23,8 +23,9 @@ bool enf_pieces_add(enf_pieces *pieces, const int32_t *ring, size_t count, int32
 size_t enf_pieces_size(const enf_pieces *pieces, int32_t piece);
 
 /// Sorts by corners, lexicographically: order[0 .. *kept) are the different pieces; of equal ones the first
-/// is kept. `order` has room for all.
-enf_status enf_pieces_sort(const enf_pieces *pieces, int32_t *order, size_t *kept, enf_error *error);
+/// is kept; copies[i] counts how often order[i] is there. `order` and `copies` have room for all.
+enf_status enf_pieces_sort(const enf_pieces *pieces, int32_t *order, int32_t *copies, size_t *kept,
+                           enf_error *error);
 
 /// How many of the sorted pieces have a twin among them that runs the other way.
 enf_status enf_pieces_count_two_sided(const enf_pieces *pieces, const int32_t *order, size_t kept,

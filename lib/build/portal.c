@@ -170,54 +170,66 @@ static bool loop_on_plane(finder *f, enf_loop loop, int32_t plane) {
     return loop.plane == plane || enf_pool_classify(&f->pool, loop, plane) == ENF_POSITION_ON;
 }
 
-/// Puts every sheet into the group of the first sheet that lies in the same plane, turned to face the same
-/// way.
-static void group_sheets(finder *f, size_t count) {
-    enf_geometry *geometry = &f->pool.geometry;
-    for (size_t s = 0; s < count && !f->pool.failed; s++) {
-        sheet *here = &f->sheets[s];
-        here->group = (int32_t)s;
-        for (size_t k = 0; k < s; k++) {
-            const sheet *other = &f->sheets[k];
-            if (other->group != (int32_t)k || other->bucket != here->bucket ||
-                !loop_on_plane(f, here->loop, other->loop.plane)) {
-                continue;
-            }
-            here->group = (int32_t)k;
-            if (here->loop.plane != other->loop.plane) {
-                if (!enf_geometry_same_way(geometry, here->loop.plane, other->loop.plane)) {
-                    here->loop = enf_pool_reversed(&f->pool, here->loop);
-                    here->side ^= 1;
-                }
-                here->loop.plane = other->loop.plane;
-            }
-            if (here->side == other->side) break;
-            here->group = (int32_t)s; // the same plane, entered from the other side: a pocket; stays apart
+typedef struct keyed {
+    uint64_t key;
+    int32_t sheet;
+} keyed;
+
+static int compare_keyed(const void *a, const void *b) {
+    const keyed *x = a, *y = b;
+    if (x->key != y->key) return x->key < y->key ? -1 : 1;
+    return (x->sheet > y->sheet) - (x->sheet < y->sheet);
+}
+
+/// Puts a sheet into the group of `root` if it lies in the same plane and is entered from the same side,
+/// turned to face the same way. (The same plane from the other side is a pocket of one cell in the other; it
+/// stays apart.)
+static bool joins_group(finder *f, sheet *here, const sheet *root) {
+    if (!loop_on_plane(f, here->loop, root->loop.plane)) return false;
+    bool turn = here->loop.plane != root->loop.plane &&
+                !enf_geometry_same_way(&f->pool.geometry, here->loop.plane, root->loop.plane);
+    if ((here->side ^ turn) != root->side) return false;
+    if (turn) here->loop = enf_pool_reversed(&f->pool, here->loop);
+    here->loop.plane = root->loop.plane;
+    here->side = root->side;
+    return true;
+}
+
+/// Gives every sheet the number of the first sheet of its plane and side. `order` has room for all.
+static void group_sheets(finder *f, size_t count, keyed *order) {
+    for (size_t s = 0; s < count; s++) order[s] = (keyed){f->sheets[s].bucket, (int32_t)s};
+    qsort(order, count, sizeof *order, compare_keyed);
+    for (size_t first = 0, s = 0; s < count && !f->pool.failed; s++) {
+        if (order[s].key != order[first].key) first = s;
+        sheet *here = &f->sheets[order[s].sheet];
+        here->group = order[s].sheet;
+        for (size_t k = first; k < s; k++) {
+            const sheet *root = &f->sheets[order[k].sheet];
+            if (root->group != order[k].sheet || !joins_group(f, here, root)) continue;
+            here->group = order[k].sheet;
+            break;
         }
     }
 }
 
 /// Joins each group; the results replace the sheets. Returns how many are left.
-static size_t merge_groups(finder *f, size_t count) {
+static size_t merge_groups(finder *f, size_t count, keyed *order) {
     size_t left = 0;
-    for (size_t s = 0; s < count && !f->pool.failed; s++) {
-        if (f->sheets[s].group != (int32_t)s) continue;
+    if (!enf_array_reserve(f->sheets, f->sheet_capacity, 2 * count) ||
+        !enf_array_reserve(f->group, f->group_capacity, count)) {
+        f->pool.failed = true;
+        return 0;
+    }
+    for (size_t s = 0; s < count; s++) order[s] = (keyed){(uint64_t)f->sheets[s].group, (int32_t)s};
+    qsort(order, count, sizeof *order, compare_keyed);
+    for (size_t s = 0, end; s < count && !f->pool.failed; s = end) {
         int32_t members = 0;
-        for (size_t k = s; k < count; k++) {
-            if (f->sheets[k].group != (int32_t)s) continue;
-            if (!enf_array_reserve(f->group, f->group_capacity, (size_t)members + 1)) {
-                f->pool.failed = true;
-                return 0;
-            }
-            f->group[members++] = f->sheets[k].loop;
+        for (end = s; end < count && order[end].key == order[s].key; end++) {
+            f->group[members++] = f->sheets[order[end].sheet].loop;
         }
-        uint8_t side = f->sheets[s].side;
+        uint8_t side = f->sheets[order[s].sheet].side;
         int32_t merged = enf_pool_merge(&f->pool, f->group, members);
         // The results wait behind the sheets that are still to be read.
-        if (!enf_array_reserve(f->sheets, f->sheet_capacity, count + left + (size_t)merged)) {
-            f->pool.failed = true;
-            return 0;
-        }
         for (int32_t m = 0; m < merged; m++)
             f->sheets[count + left++] = (sheet){.loop = f->group[m], .side = side};
     }
@@ -275,22 +287,34 @@ static int32_t opening_root(sheet *sheets, int32_t s) {
     return s;
 }
 
-/// Joins sheets that touch; the smallest number stands for each opening.
+typedef struct boxed {
+    bounds box;
+    int32_t sheet;
+} boxed;
+
+static int compare_boxed(const void *a, const void *b) {
+    const boxed *x = a, *y = b;
+    if (x->box.low[0] != y->box.low[0]) return x->box.low[0] < y->box.low[0] ? -1 : 1;
+    return (x->sheet > y->sheet) - (x->sheet < y->sheet);
+}
+
+/// Joins sheets that touch; the smallest number stands for each opening. A sweep along x finds the pairs to
+/// look at.
 static bool gather_openings(finder *f, size_t count) {
-    bounds *boxes = enf_array_new(count, sizeof *boxes);
+    boxed *boxes = enf_array_new(count, sizeof *boxes);
     if (!boxes) return false;
     for (size_t s = 0; s < count; s++) {
-        boxes[s] = loop_bounds(f, f->sheets[s].loop);
+        boxes[s] = (boxed){loop_bounds(f, f->sheets[s].loop), (int32_t)s};
         f->sheets[s].opening = (int32_t)s;
     }
-    for (size_t s = 0; s < count; s++) {
-        for (size_t k = 0; k < s; k++) {
-            int32_t a = opening_root(f->sheets, (int32_t)s), b = opening_root(f->sheets, (int32_t)k);
-            if (a == b || !bounds_meet(&boxes[s], &boxes[k])) continue;
-            if (!corner_on(f, f->sheets[s].loop, f->sheets[k].loop) &&
-                !corner_on(f, f->sheets[k].loop, f->sheets[s].loop)) {
-                continue;
-            }
+    qsort(boxes, count, sizeof *boxes, compare_boxed);
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = i + 1; k < count; k++) {
+            if (boxes[k].box.low[0] > boxes[i].box.high[0] + 2 * POSITION_ERROR) break;
+            const sheet *one = &f->sheets[boxes[i].sheet], *other = &f->sheets[boxes[k].sheet];
+            int32_t a = opening_root(f->sheets, boxes[i].sheet), b = opening_root(f->sheets, boxes[k].sheet);
+            if (a == b || !bounds_meet(&boxes[i].box, &boxes[k].box)) continue;
+            if (!corner_on(f, one->loop, other->loop) && !corner_on(f, other->loop, one->loop)) continue;
             f->sheets[a > b ? a : b].opening = a < b ? a : b;
         }
     }
@@ -396,9 +420,12 @@ static bool find_between(finder *f, const gap *gaps, size_t count) {
                                .side = gaps[i].side};
     }
     if (f->pool.failed || !unify_vertices(f, count)) return false;
-    group_sheets(f, count);
+    keyed *order = enf_array_new(count, sizeof *order);
+    if (!order) return false;
     f->portals->pieces_merged += (int32_t)count;
-    count = merge_groups(f, count);
+    group_sheets(f, count, order);
+    count = merge_groups(f, count, order);
+    free(order);
     return !f->pool.failed && gather_openings(f, count) &&
            add_openings(f, count, gaps[0].low, gaps[0].high) && !f->pool.failed;
 }

@@ -7,6 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+/// Only the time depends on these two: from how many sides on a cell is plugged, and how many a plug has at
+/// most.
+enum { PLUGGED_SIDES = 64, PLUG_SIDES = 24 };
+
 void enf_portal_heap_free(enf_portal_heap *portals) {
     enf_surface_free(&portals->surface);
     enf_pair_table_free(&portals->table);
@@ -20,7 +24,9 @@ void enf_portal_heap_free(enf_portal_heap *portals) {
     *portals = (enf_portal_heap){0};
 }
 
-static int side_of(const enf_portal *portal, int32_t cell) { return portal->cell[1] == cell; }
+static int side_of(const enf_portal *portal, int32_t cell) {
+    return portal->cell[1] == cell;
+}
 
 static void link_portal(enf_portal_heap *portals, int32_t number, int side) {
     enf_portal *portal = &portals->portals[number];
@@ -90,13 +96,31 @@ static double bound_weight(const enf_portal_heap *portals, const enf_portal *por
     normal_of(portals, portal, normal);
     for (int s = 0; s < 2; ++s) {
         silhouette = fmax(silhouette, portal->silhouette[s]);
-        silhouette = fmax(silhouette, enf_surface_silhouette_bound(&portals->surface, portal->cell[s], normal));
+        silhouette =
+            fmax(silhouette, enf_surface_silhouette_bound(&portals->surface, portal->cell[s], normal));
     }
     return weight_of(portals, portal, silhouette);
 }
 
-/// Computes the weight: the silhouettes that may have grown, the cell with the larger surface first, the other only as
-/// far as it can be the larger one. Returns false when there is no memory.
+/// Takes small neighbours that fill dents of a large cell as parts of it for the next silhouette.
+static bool plug_dents(enf_portal_heap *portals, int32_t cell, const double normal[3]) {
+    enf_surface *surface = &portals->surface;
+    if (surface->bodies[cell].side_count < PLUGGED_SIDES) return true;
+    for (int32_t number = portals->first_portal[cell]; number >= 0;) {
+        const enf_portal *portal = &portals->portals[number];
+        int side = side_of(portal, cell);
+        number = portal->next[side];
+        if (surface->bodies[portal->cell[!side]].side_count > PLUG_SIDES) continue;
+        size_t before = surface->hidden_count;
+        for (int32_t piece = portal->first_piece; piece >= 0; piece = portals->piece_next[piece])
+            if (!enf_surface_hide(surface, piece)) return false;
+        if (!enf_surface_plug(surface, portal->cell[!side], normal, before)) return false;
+    }
+    return true;
+}
+
+/// Computes the weight: the silhouettes that may have grown, the cell with the larger surface first, the
+/// other only as far as it can be the larger one. Returns false when there is no memory.
 static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) {
     double normal[3], largest = 0;
     normal_of(portals, portal, normal);
@@ -110,6 +134,7 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
     for (int i = 0; i < 2; ++i) {
         int s = i ? !first : first;
         if (known[s]) continue;
+        if (!plug_dents(portals, portal->cell[s], normal)) return false;
         double area = enf_surface_silhouette(&portals->surface, portal->cell[s], normal, largest);
         if (area < 0) return false;
         if (area <= largest) continue;
@@ -164,9 +189,10 @@ static void fill_portals(enf_portal_heap *portals) {
         portals->piece_next[piece] = -1;
         if (!surface->piece_open[piece]) continue;
         const int32_t *cell = surface->piece_cell[piece];
-        if (number < 0 || portals->portals[number].cell[0] != cell[0] || portals->portals[number].cell[1] != cell[1]) {
-            portals->portals[++number] =
-                (enf_portal){.cell = {cell[0], cell[1]}, .first_piece = -1, .last_piece = -1, .largest_piece = -1};
+        if (number < 0 || portals->portals[number].cell[0] != cell[0] ||
+            portals->portals[number].cell[1] != cell[1]) {
+            portals->portals[++number] = (enf_portal){
+                .cell = {cell[0], cell[1]}, .first_piece = -1, .last_piece = -1, .largest_piece = -1};
             *enf_pair_table_at(&portals->table, cell[0], cell[1]) = number;
             link_portal(portals, number, 0);
             link_portal(portals, number, 1);
@@ -200,7 +226,8 @@ enf_status enf_portal_heap_create(enf_portal_heap *portals, const enf_graph *gra
     enf_status status = enf_surface_create(&portals->surface, graph, error);
     if (status != ENF_OK) return status;
     size_t pieces = (size_t)portals->surface.piece_count;
-    bool fine = allocate(portals, (size_t)graph->cell_count, pieces, (size_t)count_portals(&portals->surface));
+    bool fine =
+        allocate(portals, (size_t)graph->cell_count, pieces, (size_t)count_portals(&portals->surface));
     if (fine) fill_portals(portals);
     for (int32_t number = 0; fine && number < portals->portal_count; ++number) {
         double weight;
@@ -245,7 +272,8 @@ static bool same_normal(const double a[3], const double b[3]) {
 }
 
 /// Two portals to the same cell become one. What is known of the silhouettes stays true if the normal stays.
-static void join_portals(enf_portal_heap *portals, int32_t number, int side, const enf_portal *other, int other_side) {
+static void join_portals(enf_portal_heap *portals, int32_t number, int side, const enf_portal *other,
+                         int other_side) {
     enf_portal *portal = &portals->portals[number];
     double before[3], before_other[3], normal[3];
     normal_of(portals, portal, before);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The portals between the cells while they merge, and which of them is the lightest.
 //
-// All open pieces between two cells are one portal with one weight: the largest silhouette of the two cells, seen along the portal's
-// normal, over the area of all its pieces (the thesis, 4.1.4 and 4.2.3). A silhouette only grows when its cell does, so a weight
-// of before is a lower bound: it stays in the heap as it is, and is computed anew only when it comes to the top. That
-// gives the same order of collapses as weighing every touched portal after every collapse.
+// All open pieces between two cells are one portal with one weight: the largest silhouette of the two cells,
+// seen along the portal's normal, over the area of all its pieces (the thesis, 4.1.4 and 4.2.3). A silhouette
+// only grows when its cell does, so a weight of before is a lower bound: it stays in the heap as it is, and
+// is computed anew only when it comes to the top. That gives the same order of collapses as weighing every
+// touched portal after every collapse.
 #ifndef ENF_BUILD_PORTAL_HEAP_H
 #define ENF_BUILD_PORTAL_HEAP_H
 
@@ -21,14 +22,15 @@
 #define ENF_WEIGHT_BITS 32
 
 typedef struct enf_portal {
-    int32_t cell[2];               ///< the two cells
-    int32_t next[2], previous[2];  ///< in the list of portals of each cell
+    int32_t cell[2];              ///< the two cells
+    int32_t next[2], previous[2]; ///< in the list of portals of each cell
     int32_t first_piece, last_piece, largest_piece;
-    uint32_t weighed_at[2];        ///< the ages of the cells when the weight was computed; 0: it is a lower bound
-    uint32_t silhouette_at[2];     ///< the age of the cell when its silhouette was computed; 0: it is a lower bound
-    double silhouette[2];          ///< of each cell, seen along the normal
-    double area;                   ///< of all pieces
-    double sum[3];                 ///< of the area vectors, from cell 0 to cell 1
+    uint32_t weighed_at[2]; ///< the ages of the cells when the weight was computed; 0: it is a lower bound
+    uint32_t
+        silhouette_at[2]; ///< the age of the cell when its silhouette was computed; 0: it is a lower bound
+    double silhouette[2]; ///< of each cell, seen along the normal
+    double area;          ///< of all pieces
+    double sum[3];        ///< of the area vectors, from cell 0 to cell 1
 } enf_portal;
 
 typedef struct enf_portal_heap {
@@ -36,14 +38,14 @@ typedef struct enf_portal_heap {
     enf_heuristic heuristic;
     int32_t portal_count;
     enf_portal *portals;
-    int32_t *piece_next;    ///< for each piece the next one of the same portal, or -1
-    enf_pair_table table;   ///< two cells -> their portal
+    int32_t *piece_next;  ///< for each piece the next one of the same portal, or -1
+    enf_pair_table table; ///< two cells -> their portal
     enf_heap heap;
-    int32_t *first_portal;  ///< for each cell the list of its portals, or -1
-    int32_t *degree;        ///< for each cell the length of that list
-    int32_t *smallest;      ///< for each cell the smallest fine cell in it
-    uint32_t *age;          ///< for each cell, counts the times when its silhouettes may have grown; from 1
-    size_t evaluations;     ///< weights computed
+    int32_t *first_portal; ///< for each cell the list of its portals, or -1
+    int32_t *degree;       ///< for each cell the length of that list
+    int32_t *smallest;     ///< for each cell the smallest fine cell in it
+    uint32_t *age;         ///< for each cell, counts the times when its silhouettes may have grown; from 1
+    size_t evaluations;    ///< weights computed
 } enf_portal_heap;
 
 enf_status enf_portal_heap_create(enf_portal_heap *portals, const enf_graph *graph, enf_heuristic heuristic,

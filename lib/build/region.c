@@ -174,11 +174,14 @@ static void measure(enf_regions *regions, const enf_complex *complex, const int3
     }
 }
 
-static void judge(enf_regions *regions) {
+static void judge(enf_regions *regions, double crack) {
     for (int32_t r = 0; r < regions->region_count; r++) {
         double front = regions->front_area[r], back = regions->back_area[r];
         bool sees = front > 0 && front >= back;
-        if (regions->touches_outside[r]) {
+        if (crack > 0 && 2 * regions->volume[r] < crack * (front + back) && !regions->touches_outside[r]) {
+            regions->kind[r] = ENF_KIND_ROCK;
+            regions->ambiguous[r] = false;
+        } else if (regions->touches_outside[r]) {
             regions->kind[r] = regions->winding[r] > 0 ? ENF_KIND_ROCK : ENF_KIND_OUTSIDE;
         } else if (regions->winding[r] > 0 || (regions->winding[r] == 0 && !sees)) {
             regions->kind[r] = ENF_KIND_ROCK;
@@ -285,11 +288,11 @@ enf_status enf_regions_colour(enf_regions *regions, enf_complex *complex, const 
     bool good = face_cell && colour_cells(regions, complex, face_cell, crack) && allocate(regions);
     if (good) {
         measure(regions, complex, face_cell);
-        good = enf_complex_wind(complex, face_cell, regions->cell_region, regions->region_count,
+        good = enf_complex_wind(complex, mesh, face_cell, regions->cell_region, regions->region_count,
                                 regions->winding, regions->ambiguous);
     }
     if (good) {
-        judge(regions);
+        judge(regions, crack);
         good = place_spawns(regions, complex, mesh, tets) &&
                enf_regions_trace_leak(regions, complex, mesh, face_cell);
     }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exact area of a silhouette, by a plane sweep over slabs (Bentley and Ottmann, 1979, without their tree).
+// The exact area of a silhouette, by a plane sweep over slabs (Bentley and Ottmann, 1979, without their
+// tree).
 //
-// Between two neighbouring edge ends (a slab) every active edge runs from the left to the right border. Sorted by height,
-// the edges fall into blocks: within a block edges cross, blocks don't. A block of one edge is a term of the sum right
-// away; a larger one is cut at its crossings. The covered height at x is the sum over the edges of -y for one that
-// opens the covered part, +y for one that closes it.
+// Between two neighbouring edge ends (a slab) every active edge runs from the left to the right border.
+// Sorted by height, the edges fall into blocks: within a block edges cross, blocks don't. A block of one edge
+// is a term of the sum right away; a larger one is cut at its crossings. The covered height at x is the sum
+// over the edges of -y for one that opens the covered part, +y for one that closes it.
 //
-// A large figure is cut into horizontal bands first, each with a sweep of its own, so that few edges are active at a time.
-// What lies below a band acts on it only through the winding number along its lower border.
+// A large figure is cut into horizontal bands first, each with a sweep of its own, so that few edges are
+// active at a time. What lies below a band acts on it only through the winding number along its lower border.
 #include "build/silhouette.h"
 
 #include <math.h>
@@ -15,7 +16,8 @@
 
 #include "base/array.h"
 
-/// Only the time depends on these: edges in a block that is halved, how often, and bands per square root of the edges.
+/// Only the time depends on these: edges in a block that is halved, how often, and bands per square root of
+/// the edges.
 enum { LARGE_BLOCK = 24, MOST_HALVINGS = 12 };
 #ifndef BAND_DIVISOR
 #define BAND_DIVISOR 2
@@ -43,7 +45,9 @@ void enf_silhouette_free(enf_silhouette *work) {
     *work = (enf_silhouette){0};
 }
 
-void enf_silhouette_clear(enf_silhouette *work) { work->edge_count = 0; }
+void enf_silhouette_clear(enf_silhouette *work) {
+    work->edge_count = 0;
+}
 
 bool enf_silhouette_add(enf_silhouette *work, const double a[2], const double b[2], int32_t times) {
     if (!enf_array_reserve(work->edges, work->edge_capacity, work->edge_count + 1)) return false;
@@ -55,7 +59,9 @@ bool enf_silhouette_add(enf_silhouette *work, const double a[2], const double b[
     return true;
 }
 
-static int compare_doubles(double a, double b) { return (a > b) - (a < b); }
+static int compare_doubles(double a, double b) {
+    return (a > b) - (a < b);
+}
 
 static int compare_edges(const void *first, const void *second) {
     const enf_contour_edge *a = first, *b = second;
@@ -83,7 +89,8 @@ static void prepare(enf_silhouette *work, double *low, double *high) {
     *high = -INFINITY;
     for (size_t i = 0; i < work->edge_count; ++i) {
         const enf_contour_edge *edge = &work->edges[i];
-        if (edge->rise == 0 || !isfinite(edge->x0) || !isfinite(edge->x1) || !isfinite(edge->y0) || !isfinite(edge->y1))
+        if (edge->rise == 0 || !isfinite(edge->x0) || !isfinite(edge->x1) || !isfinite(edge->y0) ||
+            !isfinite(edge->y1))
             continue;
         *low = fmin(*low, fmin(edge->y0, edge->y1));
         *high = fmax(*high, fmax(edge->y0, edge->y1));
@@ -99,8 +106,8 @@ static double crossing_at(const enf_contour_edge *edge, double y) {
     return fmin(fmax(x, edge->x0), edge->x1);
 }
 
-/// Collects the parts of the edges within the band, the turns of the winding number along its lower border, and the
-/// borders of all slabs.
+/// Collects the parts of the edges within the band, the turns of the winding number along its lower border,
+/// and the borders of all slabs.
 static bool fill_band(enf_silhouette *work, double low, double high, size_t *event_count) {
     if (!enf_array_reserve(work->parts, work->part_capacity, work->edge_count) ||
         !enf_array_reserve(work->turns, work->turn_capacity, work->edge_count) ||
@@ -114,7 +121,8 @@ static bool fill_band(enf_silhouette *work, double low, double high, size_t *eve
         if ((edge->y0 < low && edge->y1 < low) || (edge->y0 > high && edge->y1 > high)) continue;
         if ((edge->y0 < low) != (edge->y1 < low)) {
             double x = crossing_at(edge, low);
-            work->turns[work->turn_count++] = (enf_border_turn){x, edge->y1 > edge->y0 ? -edge->rise : edge->rise};
+            work->turns[work->turn_count++] =
+                (enf_border_turn){x, edge->y1 > edge->y0 ? -edge->rise : edge->rise};
             work->events[events++] = x;
             if (edge->y0 < low) part.x0 = x, part.y0 = low;
             if (edge->y1 < low) part.x1 = x, part.y1 = low;
@@ -177,7 +185,8 @@ static int factor_of(const slab_edge *edge, int64_t *winding) {
     return (int)below - (int)(*winding > 0);
 }
 
-static bool collect_crossings(enf_silhouette *work, const slab_edge *block, size_t count, size_t *crossing_count) {
+static bool collect_crossings(enf_silhouette *work, const slab_edge *block, size_t count,
+                              size_t *crossing_count) {
     size_t found = 0;
     for (size_t i = 0; i < count; ++i)
         for (size_t j = i + 1; j < count; ++j) {
@@ -196,7 +205,8 @@ static bool collect_crossings(enf_silhouette *work, const slab_edge *block, size
 }
 
 /// Adds the mean covered height of a block whose edges cross within the slab.
-static bool add_block(enf_silhouette *work, const slab_edge *block, size_t count, int64_t *winding, double *mean) {
+static bool add_block(enf_silhouette *work, const slab_edge *block, size_t count, int64_t *winding,
+                      double *mean) {
     size_t crossing_count;
     if (!collect_crossings(work, block, count, &crossing_count)) return false;
     if (!enf_array_reserve(work->order, work->order_capacity, count)) return false;
@@ -224,12 +234,14 @@ static bool add_block(enf_silhouette *work, const slab_edge *block, size_t count
 static size_t block_end(const enf_silhouette *work, size_t begin, size_t count) {
     double highest = work->active[begin].right;
     size_t end = begin + 1;
-    for (; end < count && highest > work->lowest[end]; ++end) highest = fmax(highest, work->active[end].right);
+    for (; end < count && highest > work->lowest[end]; ++end)
+        highest = fmax(highest, work->active[end].right);
     return end;
 }
 
 /// Adds the mean covered height of the slab; `winding` is the winding number at its lower border.
-static bool add_slab(enf_silhouette *work, size_t count, int64_t winding, const double band[2], double *mean) {
+static bool add_slab(enf_silhouette *work, size_t count, int64_t winding, const double band[2],
+                     double *mean) {
     const slab_edge *active = work->active;
     if (winding > 0) *mean -= band[0];
     for (size_t begin = 0, end; begin < count; begin = end) {
@@ -245,7 +257,8 @@ static bool add_slab(enf_silhouette *work, size_t count, int64_t winding, const 
     return true;
 }
 
-/// At the left border of a slab: ended edges leave, others go on at the height that they had reached, new ones come in.
+/// At the left border of a slab: ended edges leave, others go on at the height that they had reached, new
+/// ones come in.
 static bool enter_slab(enf_silhouette *work, double from, size_t *count, size_t *next) {
     size_t kept = 0;
     for (size_t i = 0; i < *count; ++i)
@@ -284,12 +297,14 @@ static bool add_band(enf_silhouette *work, const double band[2], double *area) {
     if (!fill_band(work, band[0], band[1], &event_count)) return false;
     for (size_t i = 0; i + 1 < event_count; ++i) {
         double from = work->events[i];
-        for (; turn < work->turn_count && work->turns[turn].x <= from; ++turn) winding += work->turns[turn].change;
+        for (; turn < work->turn_count && work->turns[turn].x <= from; ++turn)
+            winding += work->turns[turn].change;
         while (from < work->events[i + 1]) {
             double to = work->events[i + 1], mean = 0;
             if (!enter_slab(work, from, &count, &next)) return false;
             // A block costs the cube of its size: halve the slab until no block is large.
-            for (int halvings = 0; run_edges(work, to, count) > LARGE_BLOCK && halvings < MOST_HALVINGS; ++halvings) {
+            for (int halvings = 0; run_edges(work, to, count) > LARGE_BLOCK && halvings < MOST_HALVINGS;
+                 ++halvings) {
                 double middle = from + (to - from) / 2;
                 if (!(from < middle && middle < to)) break;
                 to = middle;
@@ -309,7 +324,8 @@ bool enf_silhouette_area(enf_silhouette *work, double *area) {
     if (work->edge_count == 0) return true;
     int bands = 1 + (int)(sqrt((double)work->edge_count) / BAND_DIVISOR);
     for (int i = 0; i < bands; ++i) {
-        double band[2] = {low + (high - low) * ((double)i / bands), low + (high - low) * ((double)(i + 1) / bands)};
+        double band[2] = {low + (high - low) * ((double)i / bands),
+                          low + (high - low) * ((double)(i + 1) / bands)};
         if (i == bands - 1) band[1] = high;
         if (!add_band(work, band, area)) return false;
     }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exact area of a silhouette: the part of the plane that a projected closed surface covers, overlaps counted once.
-// A plane sweep over the contour edges (Bentley and Ottmann, 1979, with slabs instead of a tree): the area where the winding
-// number is positive. "Exact" means up to the rounding of sums and products: nothing is sampled or boxed, and a wrongly
-// ordered pair of nearly equal edges costs no more than the sliver between them.
+// The exact area of a silhouette: the part of the plane that a projected closed surface covers, overlaps
+// counted once. A plane sweep over the contour edges (Bentley and Ottmann, 1979, with slabs instead of a
+// tree): the area where the winding number is positive. "Exact" means up to the rounding of sums and
+// products: nothing is sampled or boxed, and a wrongly ordered pair of nearly equal edges costs no more than
+// the sliver between them.
 #ifndef ENF_BUILD_SILHOUETTE_H
 #define ENF_BUILD_SILHOUETTE_H
 
@@ -46,12 +47,13 @@ void enf_silhouette_free(enf_silhouette *work);
 /// Starts a new figure.
 void enf_silhouette_clear(enf_silhouette *work);
 
-/// Adds the edge from a to b of a counter-clockwise outline `times` times (negative: from b to a). Returns false when there
-/// is no memory.
+/// Adds the edge from a to b of a counter-clockwise outline `times` times (negative: from b to a). Returns
+/// false when there is no memory.
 bool enf_silhouette_add(enf_silhouette *work, const double a[2], const double b[2], int32_t times);
 
-/// The area where the winding number of the figure is positive. The edges have to be those of closed outlines; their
-/// order does not matter, not even for the last bit. Uses up the figure. Returns false when there is no memory.
+/// The area where the winding number of the figure is positive. The edges have to be those of closed
+/// outlines; their order does not matter, not even for the last bit. Uses up the figure. Returns false when
+/// there is no memory.
 bool enf_silhouette_area(enf_silhouette *work, double *area);
 
 #endif

@@ -23,6 +23,9 @@ void enf_surface_free(enf_surface *surface) {
     free(surface->edge_sum);
     free(surface->touched);
     free(surface->facing);
+    free(surface->piece_hidden);
+    free(surface->hidden);
+    free(surface->plugs);
     enf_silhouette_free(&surface->silhouette);
     *surface = (enf_surface){0};
 }
@@ -39,7 +42,8 @@ typedef struct sorted_piece {
 static const double *corner_of(const sorted_piece *sorted, int32_t i) {
     const enf_graph *graph = sorted->graph;
     int64_t begin = graph->piece_corner[sorted->piece], end = graph->piece_corner[sorted->piece + 1];
-    int64_t count = end - begin, at = sorted->turned ? sorted->start - (int64_t)i : sorted->start + (int64_t)i;
+    int64_t count = end - begin,
+            at = sorted->turned ? sorted->start - (int64_t)i : sorted->start + (int64_t)i;
     return graph->corners[begin + ((at % count) + count) % count];
 }
 
@@ -76,8 +80,8 @@ static enf_status prepare_piece(const enf_graph *graph, int32_t piece, sorted_pi
     if (back < -1 || back >= graph->cell_count || front < -1 || front >= graph->cell_count || begin < 0 ||
         end < begin || end - begin > INT32_MAX)
         return enf_fail(error, ENF_BAD_INPUT,
-                        "cell graph: piece %d has cells %d and %d of %d, corners %lld to %lld", (int)piece, (int)back,
-                        (int)front, (int)graph->cell_count, (long long)begin, (long long)end);
+                        "cell graph: piece %d has cells %d and %d of %d, corners %lld to %lld", (int)piece,
+                        (int)back, (int)front, (int)graph->cell_count, (long long)begin, (long long)end);
     *wanted = back != front && end - begin >= 3;
     bool turned = (uint32_t)back > (uint32_t)front;
     *sorted = (sorted_piece){.cells = {(uint32_t)(turned ? front : back), (uint32_t)(turned ? back : front)},
@@ -90,8 +94,8 @@ static enf_status prepare_piece(const enf_graph *graph, int32_t piece, sorted_pi
     return ENF_OK;
 }
 
-static enf_status sort_pieces(const enf_graph *graph, sorted_piece *sorted, int32_t *count, int64_t *corner_count,
-                              enf_error *error) {
+static enf_status sort_pieces(const enf_graph *graph, sorted_piece *sorted, int32_t *count,
+                              int64_t *corner_count, enf_error *error) {
     *count = 0;
     *corner_count = 0;
     for (int32_t piece = 0; piece < graph->piece_count; ++piece) {
@@ -101,7 +105,8 @@ static enf_status sort_pieces(const enf_graph *graph, sorted_piece *sorted, int3
         if (wanted) *corner_count += corner_count_of(&sorted[(*count)++]);
     }
     if (*corner_count > INT32_MAX / 2)
-        return enf_fail(error, ENF_NO_RESOURCES, "cell graph: more than %d corners; split the world", INT32_MAX / 2);
+        return enf_fail(error, ENF_NO_RESOURCES, "cell graph: more than %d corners; split the world",
+                        INT32_MAX / 2);
     qsort(sorted, (size_t)*count, sizeof *sorted, compare_pieces);
     return ENF_OK;
 }
@@ -110,6 +115,7 @@ static bool allocate(enf_surface *surface, size_t pieces, size_t corners, size_t
     surface->piece_cell = enf_array_new(pieces, sizeof *surface->piece_cell);
     surface->piece_open = enf_array_new(pieces, sizeof *surface->piece_open);
     surface->piece_gone = enf_array_zeroed(pieces, sizeof *surface->piece_gone);
+    surface->piece_hidden = enf_array_zeroed(pieces, sizeof *surface->piece_hidden);
     surface->piece_area = enf_array_new(pieces, sizeof *surface->piece_area);
     surface->piece_edge = enf_array_zeroed(pieces + 1, sizeof *surface->piece_edge);
     surface->piece_edges = enf_array_new(corners, sizeof *surface->piece_edges);
@@ -118,9 +124,9 @@ static bool allocate(enf_surface *surface, size_t pieces, size_t corners, size_t
     surface->vertices = enf_array_new(corners, sizeof *surface->vertices);
     surface->edge_sum = enf_array_zeroed(corners, sizeof *surface->edge_sum);
     surface->bodies = enf_array_new(cells, sizeof *surface->bodies);
-    return surface->piece_cell && surface->piece_open && surface->piece_gone && surface->piece_area &&
-           surface->piece_edge && surface->piece_edges && surface->sides && surface->edges && surface->vertices &&
-           surface->edge_sum && surface->bodies;
+    return surface->piece_cell && surface->piece_open && surface->piece_gone && surface->piece_hidden &&
+           surface->piece_area && surface->piece_edge && surface->piece_edges && surface->sides &&
+           surface->edges && surface->vertices && surface->edge_sum && surface->bodies;
 }
 
 /// Finds or adds a vertex in a table of vertex numbers (open addressing).
@@ -164,7 +170,8 @@ static void measure_piece(enf_surface *surface, int32_t piece, const sorted_piec
             a[k] = p[k] - origin[k];
             b[k] = q[k] - origin[k];
         }
-        for (int k = 0; k < 3; ++k) sum[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        for (int k = 0; k < 3; ++k)
+            sum[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
     }
     enf_surface_side *sides = &surface->sides[2 * piece];
     for (int k = 0; k < 3; ++k) {
@@ -247,7 +254,8 @@ static void fill_bodies(enf_surface *surface, int32_t cell_count) {
                                            .high = {-INFINITY, -INFINITY, -INFINITY}};
     for (int32_t piece = 0; piece < surface->piece_count; ++piece)
         for (int s = 0; s < 2; ++s)
-            if (surface->piece_cell[piece][s] >= 0) add_side(surface, 2 * piece + s, surface->piece_cell[piece][s]);
+            if (surface->piece_cell[piece][s] >= 0)
+                add_side(surface, 2 * piece + s, surface->piece_cell[piece][s]);
 }
 
 enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_error *error) {
@@ -286,14 +294,16 @@ void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
     other->side_count = 0;
 }
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
-/// Walks over the sides of a cell, unlinks those of gone pieces, collects those that face the direction, and
+/// Walks over the sides of a cell, unlinks those of gone pieces, appends those that face the direction, and
 /// returns half the sum of all projected areas.
-static double collect_facing(enf_surface *surface, int32_t cell, const double direction[3], size_t *facing_count) {
+static double collect_facing(enf_surface *surface, int32_t cell, const double direction[3],
+                             size_t *facing_count) {
     enf_body *body = &surface->bodies[cell];
     double sum = 0;
-    size_t count = 0;
     int32_t last = -1;
     for (int32_t side = body->first_side, next; side >= 0; side = next) {
         next = surface->sides[side].next;
@@ -306,13 +316,61 @@ static double collect_facing(enf_surface *surface, int32_t cell, const double di
             continue;
         }
         last = side;
+        if (surface->piece_hidden[side / 2]) continue;
         double projected = dot(surface->sides[side].outward, direction);
         sum += fabs(projected);
-        if (projected > 0) surface->facing[count++] = side;
+        if (projected > 0) surface->facing[(*facing_count)++] = side;
     }
     body->last_side = last;
-    *facing_count = count;
     return sum / 2;
+}
+
+bool enf_surface_hide(enf_surface *surface, int32_t piece) {
+    if (!enf_array_reserve(surface->hidden, surface->hidden_capacity, surface->hidden_count + 1))
+        return false;
+    surface->hidden[surface->hidden_count++] = piece;
+    surface->piece_hidden[piece] = true;
+    return true;
+}
+
+static void show_pieces(enf_surface *surface, size_t from) {
+    while (surface->hidden_count > from)
+        surface->piece_hidden[surface->hidden[--surface->hidden_count]] = false;
+}
+
+bool enf_surface_plug(enf_surface *surface, int32_t neighbour, const double direction[3],
+                      size_t hidden_before) {
+    bool towards = false, away = false;
+    for (int32_t side = surface->bodies[neighbour].first_side; side >= 0; side = surface->sides[side].next) {
+        if (surface->piece_gone[side / 2] || surface->piece_hidden[side / 2]) continue;
+        double projected = dot(surface->sides[side].outward, direction);
+        towards = towards || projected > 0;
+        away = away || projected < 0;
+    }
+    if (towards && away) {
+        show_pieces(surface, hidden_before);
+        return true;
+    }
+    if (!enf_array_reserve(surface->plugs, surface->plug_capacity, surface->plug_count + 1)) return false;
+    surface->plugs[surface->plug_count++] = neighbour;
+    return true;
+}
+
+/// Collects the facing sides of the cell and its plugs.
+static bool collect_all(enf_surface *surface, int32_t cell, const double direction[3], size_t *facing_count,
+                        double *bound) {
+    size_t sides = (size_t)surface->bodies[cell].side_count;
+    for (size_t i = 0; i < surface->plug_count; ++i)
+        sides += (size_t)surface->bodies[surface->plugs[i]].side_count;
+    *facing_count = 0;
+    *bound = 0;
+    bool fine = enf_array_reserve(surface->facing, surface->facing_capacity, sides);
+    if (fine) *bound = collect_facing(surface, cell, direction, facing_count);
+    for (size_t i = 0; fine && i < surface->plug_count; ++i)
+        *bound += collect_facing(surface, surface->plugs[i], direction, facing_count);
+    show_pieces(surface, 0);
+    surface->plug_count = 0;
+    return fine;
 }
 
 /// Two unit vectors that span the plane across the direction; axis directions give axis vectors.
@@ -360,7 +418,8 @@ static bool add_contour(enf_surface *surface, size_t touched_count, const double
         int32_t edge = surface->touched[i], times = surface->edge_sum[edge];
         if (times == 0) continue;
         surface->edge_sum[edge] = 0;
-        const double *a = surface->vertices[surface->edges[edge][0]], *b = surface->vertices[surface->edges[edge][1]];
+        const double *a = surface->vertices[surface->edges[edge][0]],
+                     *b = surface->vertices[surface->edges[edge][1]];
         double from[2] = {dot(a, u), dot(a, v)}, to[2] = {dot(b, u), dot(b, v)};
         fine = fine && enf_silhouette_add(&surface->silhouette, from, to, times);
     }
@@ -369,13 +428,13 @@ static bool add_contour(enf_surface *surface, size_t touched_count, const double
 
 double enf_surface_silhouette(enf_surface *surface, int32_t cell, const double direction[3], double enough) {
     const enf_body *body = &surface->bodies[cell];
-    if (!enf_array_reserve(surface->facing, surface->facing_capacity, body->side_count)) return -1;
     size_t facing_count, touched_count;
-    double bound = collect_facing(surface, cell, direction, &facing_count);
+    double bound;
+    if (!collect_all(surface, cell, direction, &facing_count, &bound)) return -1;
     if (bound <= enough || body->fine_count == 1) return bound;
-    double area;
-    if (!sum_edges(surface, facing_count, &touched_count) || !add_contour(surface, touched_count, direction) ||
-        !enf_silhouette_area(&surface->silhouette, &area))
+    double area = 0;
+    if (!sum_edges(surface, facing_count, &touched_count) ||
+        !add_contour(surface, touched_count, direction) || !enf_silhouette_area(&surface->silhouette, &area))
         return -1;
     return area > 0 ? area : 0;
 }

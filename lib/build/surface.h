@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surfaces of the cells while they merge: which pieces bound a cell, and the area of its silhouette from any direction.
+// The surfaces of the cells while they merge: which pieces bound a cell, and the area of its silhouette from
+// any direction.
 //
-// A silhouette needs only the contour: the edges between pieces that face the direction and pieces that don't. Edges
-// inside the facing part cancel by their numbers, so the sweep sees a small part of a large surface.
+// A silhouette needs only the contour: the edges between pieces that face the direction and pieces that
+// don't. Edges inside the facing part cancel by their numbers, so the sweep sees a small part of a large
+// surface.
 #ifndef ENF_BUILD_SURFACE_H
 #define ENF_BUILD_SURFACE_H
 
@@ -24,15 +26,17 @@ typedef struct enf_body {
     double low[3], high[3]; ///< bounding box
 } enf_body;
 
-/// Pieces are numbered canonically (by their cells, then their corners), so nothing depends on their order in the graph.
+/// Pieces are numbered canonically (by their cells, then their corners), so nothing depends on their order in
+/// the graph.
 typedef struct enf_surface {
     int32_t piece_count;
     int32_t (*piece_cell)[2]; ///< fine cells; the smaller number first, -1 last
     bool *piece_open;
-    bool *piece_gone;   ///< the cells of an open piece have become one
-    double *piece_area; ///< true area
-    int64_t *piece_edge; ///< piece_count + 1 offsets into piece_edges
-    int32_t *piece_edges; ///< 2 * edge, + 1 when the outline (counter-clockwise seen from cell 1's side) runs it backwards
+    bool *piece_gone;     ///< the cells of an open piece have become one
+    double *piece_area;   ///< true area
+    int64_t *piece_edge;  ///< piece_count + 1 offsets into piece_edges
+    int32_t *piece_edges; ///< 2 * edge, + 1 when the outline (counter-clockwise seen from cell 1's side) runs
+                          ///< it backwards
     enf_surface_side *sides;
 
     int32_t edge_count;
@@ -46,6 +50,10 @@ typedef struct enf_surface {
     int32_t *edge_sum; ///< working memory, all zero between calls: how often the facing pieces run each edge
     int32_t *touched;  ///< the edges with something in edge_sum
     size_t touched_capacity;
+    bool *piece_hidden; ///< working memory, all false between calls: pieces that plugs cover
+    int32_t *hidden;    ///< those pieces
+    int32_t *plugs;     ///< cells taken as part of the cell whose silhouette is next
+    size_t hidden_count, hidden_capacity, plug_count, plug_capacity;
     int32_t *facing; ///< sides that face the direction
     size_t facing_capacity;
     enf_silhouette silhouette;
@@ -55,18 +63,30 @@ typedef struct enf_surface {
 enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_error *error);
 void enf_surface_free(enf_surface *surface);
 
-/// Adds the body of `gone` to that of `kept`. The pieces between them must be marked as gone before the next silhouette.
+/// Adds the body of `gone` to that of `kept`. The pieces between them must be marked as gone before the next
+/// silhouette.
 void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone);
 
-/// Area of the cell's silhouette seen along the unit vector `direction`. When half the sum of all projected pieces, an
-/// upper bound, is at most `enough`, returns that instead. Negative when there is no memory.
+/// Area of the cell's silhouette seen along the unit vector `direction`. When half the sum of all projected
+/// pieces, an upper bound, is at most `enough`, returns that instead. Negative when there is no memory.
 double enf_surface_silhouette(enf_surface *surface, int32_t cell, const double direction[3], double enough);
 
-/// A lower bound of the same, from the volume and the extent along the direction, in constant time.
+/// For the next silhouette only: hides a piece of the cell that leads to a neighbour.
+bool enf_surface_hide(enf_surface *surface, int32_t piece);
+
+/// For the next silhouette only: takes a neighbour as part of the cell when that changes nothing, since all
+/// its pieces that face the direction, or all that don't, are hidden ones, that is, lie on the cell.
+/// Otherwise the pieces hidden since there were `hidden_before` come back. Small neighbours that fill dents
+/// make the contour of a large cell a lot shorter.
+bool enf_surface_plug(enf_surface *surface, int32_t neighbour, const double direction[3],
+                      size_t hidden_before);
+
+/// A lower bound of the silhouette, from the volume and the extent along the direction, in constant time.
 double enf_surface_silhouette_bound(const enf_surface *surface, int32_t cell, const double direction[3]);
 
-/// True when the remaining pieces of the cell all have the same normal: then a body that has been joined to it along
-/// all its other pieces gained no silhouette by that, in any direction. Looks at no more than a few pieces.
+/// True when the remaining pieces of the cell all have the same normal: then a body that has been joined to
+/// it along all its other pieces gained no silhouette by that, in any direction. Looks at no more than a few
+/// pieces.
 bool enf_surface_is_lid(const enf_surface *surface, int32_t cell);
 
 #endif

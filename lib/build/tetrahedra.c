@@ -100,7 +100,8 @@ enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t c
         for (int32_t i = 0; i < point_count && status == ENF_OK; i++) {
             if (mesh->point_tetrahedron[i] >= 0) continue;
             status = enf_fail(error, ENF_NO_RESOURCES,
-                              "the tetrahedralizer left out point %d; try the other one (--tetrahedralizer)", (int)i);
+                              "the tetrahedralizer left out point %d; try the other one (--tetrahedralizer)",
+                              (int)i);
         }
     }
     free(table);

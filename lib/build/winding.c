@@ -48,7 +48,8 @@ static bool holds(const enf_complex *complex, const enf_loops *loops, int32_t lo
 }
 
 /// Solids entered when going from the facet's front to its back through the middle of a piece.
-static int32_t solids_behind(const enf_complex *complex, int32_t facet, int32_t piece, const double area[3]) {
+static int32_t solids_behind(const enf_complex *complex, const enf_mesh *mesh, int32_t facet, int32_t piece,
+                             const double area[3]) {
     int32_t count = 0;
     double centre[3];
     int axis = fabs(area[0]) > fabs(area[1]) ? (fabs(area[0]) > fabs(area[2]) ? 0 : 2)
@@ -56,15 +57,17 @@ static int32_t solids_behind(const enf_complex *complex, int32_t facet, int32_t 
     enf_complex_loop_centre(complex, &complex->pieces, piece, centre);
     for (int32_t c = complex->facet_cover[facet]; c < complex->facet_cover[facet + 1]; c++) {
         if (c != complex->piece_cover[piece] && !holds(complex, &complex->covers, c, centre, axis)) continue;
-        count += complex->cover_side[c] == 1 ? 1 : -1;
+        int32_t copies = mesh->polygon_copies[complex->cover_polygon[c]];
+        count += complex->cover_side[c] == 1 ? copies : -copies;
     }
     return count;
 }
 
 /// One vote per occluded piece; votes for the same claim are added up. The outside is region number
 /// region_count.
-static bool collect_votes(const enf_complex *complex, const int32_t *face_cell, const int32_t *cell_region,
-                          int32_t region_count, vote **votes, size_t *vote_count) {
+static bool collect_votes(const enf_complex *complex, const enf_mesh *mesh, const int32_t *face_cell,
+                          const int32_t *cell_region, int32_t region_count, vote **votes,
+                          size_t *vote_count) {
     size_t count = 0, capacity = 0;
     *votes = NULL;
     for (int32_t facet = 0; facet < complex->facet_count; facet++) {
@@ -79,7 +82,7 @@ static bool collect_votes(const enf_complex *complex, const int32_t *face_cell, 
             if (side[0] == side[1] || (open && side[0] != region_count && side[1] != region_count)) continue;
             double area[3];
             enf_complex_piece_area(complex, p, area);
-            int32_t entered = open ? 0 : solids_behind(complex, facet, p, area);
+            int32_t entered = open ? 0 : solids_behind(complex, mesh, facet, p, area);
             if (!enf_array_reserve(*votes, capacity, count + 1)) return false;
             bool ordered = side[0] < side[1];
             (*votes)[count++] =
@@ -118,15 +121,15 @@ static int32_t find_root(int32_t *parent, int32_t *difference, int32_t region) {
     return root;
 }
 
-bool enf_complex_wind(const enf_complex *complex, const int32_t *face_cell, const int32_t *cell_region,
-                      int32_t region_count, int32_t *winding, bool *ambiguous) {
+bool enf_complex_wind(const enf_complex *complex, const enf_mesh *mesh, const int32_t *face_cell,
+                      const int32_t *cell_region, int32_t region_count, int32_t *winding, bool *ambiguous) {
     vote *votes;
     size_t vote_count;
     size_t nodes = (size_t)region_count + 1;
     int32_t *parent = enf_array_new(nodes, sizeof *parent),
             *difference = enf_array_zeroed(nodes, sizeof *difference);
-    bool good = collect_votes(complex, face_cell, cell_region, region_count, &votes, &vote_count) && parent &&
-                difference;
+    bool good = collect_votes(complex, mesh, face_cell, cell_region, region_count, &votes, &vote_count) &&
+                parent && difference;
     for (int32_t r = 0; good && r <= region_count; r++) parent[r] = r;
     memset(ambiguous, 0, (size_t)region_count * sizeof *ambiguous);
     for (size_t i = 0; good && i < vote_count; i++) {

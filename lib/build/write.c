@@ -158,6 +158,8 @@ static enf_status make_provenance(enf_image *image, const enf_build *build, cons
     made->collapses = (int64_t)build->decimation.collapse_count;
     made->pieces_merged = build->portals.pieces_merged;
     made->slivers = build->portals.slivers;
+    made->sealed = build->regions.sealed;
+    made->sealed_area = build->regions.sealed_area * build->mesh.frame.step * build->mesh.frame.step;
     made->leak = build->regions.leak;
     image->view.provenance = made;
     return ENF_OK;

@@ -9,7 +9,7 @@
 
 _Static_assert(sizeof(enf_file_header) == 64, "header layout");
 _Static_assert(sizeof(enf_file_section) == 48, "section layout");
-_Static_assert(sizeof(enf_file_provenance) == 136, "provenance layout");
+_Static_assert(sizeof(enf_file_provenance) == 152, "provenance layout");
 _Static_assert(sizeof(enf_file_frame) == 136, "frame layout");
 _Static_assert(sizeof(enf_file_region) == 32, "region layout");
 _Static_assert(sizeof(enf_file_spawn) == 32, "spawn layout");

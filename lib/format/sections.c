@@ -64,7 +64,7 @@ const enf_section_spec enf_section_specs[] = {
     SECTION("PIECEOFF", EXACT,    PIECES,             1, OFFSETS64, PIECE_CORNERS, 0, piece_offset),
     SECTION("PIECECOR", EXACT,    PIECE_CORNERS,      0, CORNERS,   NONE,          0, piece_corners),
     SECTION("PIECEFAC", EXACT,    PIECES,             0, INDEX,     FACES,        -1, piece_face),
-    SECTION("PIECECOV", EXACT,    PIECES,             0, INDEX,     COVERS,       -1, piece_cover),
+    SECTION("PIECECOV", EXACT,    PIECES,             0, INDEX,     COVERS,       -2, piece_cover),
     SECTION("SEENOFF",  EXACT,    FINE,               1, OFFSETS64, SEEN,          0, seen_offset),
     SECTION("SEEN",     EXACT,    SEEN,               0, INDEX,     MESH_POLYGONS, 0, seen),
     SECTION("POLYOFF",  EXACT,    MESH_POLYGONS,      1, OFFSETS64, MESH_CORNERS,  0, mesh_polygon_corner),

@@ -133,7 +133,8 @@ static enf_status check_head(checker *check) {
     const enf_file_view *view = check->view;
     if (view->string_bytes < 1 || view->strings[view->string_bytes - 1] != 0)
         return element_fails(check->error, "STRINGS", view->string_bytes - 1);
-    if (!is_string(view, view->provenance->options) || view->provenance->input_polygons < 0)
+    if (!is_string(view, view->provenance->options) || view->provenance->input_polygons < 0 ||
+        !isfinite(view->provenance->sealed_area))
         return element_fails(check->error, "PROVEN", 0);
 
     const enf_file_frame *frame = view->frame;

@@ -51,6 +51,8 @@ void enf_world_get_info(const enf_world *world, enf_world_info *info) {
     info->fine_cells = file->fine_count;
     info->fine_cells_discarded = made->fine_cells_discarded;
     info->fine_cells_active = made->fine_cells_active;
+    info->sealed = made->sealed;
+    info->sealed_area = made->sealed_area;
     info->portals_initial = made->portals_initial;
     info->collapses = made->collapses;
     info->input_vertices = made->input_vertices;

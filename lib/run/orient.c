@@ -57,6 +57,15 @@ static int orient_exactly(const double a[3], const double b[3], const double c[3
     return 0;
 }
 
+/// The largest power of two, up to 2^53, that divides all coordinates.
+static double common_unit(const double *const points[4]) {
+    uint64_t bits = UINT64_C(1) << 53;
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) bits |= (uint64_t)(int64_t)points[i][k];
+    }
+    return (double)(bits & -bits);
+}
+
 int enf_orient(const double a[3], const double b[3], const double c[3], const double d[3]) {
     double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
     double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
@@ -68,5 +77,8 @@ int enf_orient(const double a[3], const double b[3], const double c[3], const do
     // Per term three rounded differences, two rounded products, three rounded sums: 8 units of 2^-53 and a
     // little; 10 covers the rounding of `magnitude` too.
     if (fabs(determinant) > 10 * 0x1p-53 * magnitude) return determinant > 0 ? 1 : -1;
+    // Where coordinates have few significant bits nothing was rounded, and 0 is 0.
+    double unit = common_unit((const double *const[]){a, b, c, d});
+    if (magnitude < 0x1p53 * unit * unit * unit) return determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
     return orient_exactly(a, b, c, d);
 }

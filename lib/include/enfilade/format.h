@@ -54,6 +54,8 @@ typedef struct enf_file_provenance {
     int64_t fine_cells_discarded, fine_cells_active;
     int64_t portals_initial, collapses;
     int64_t pieces_merged, slivers; ///< by the portal stage
+    int64_t sealed;                 ///< cracks between regions that were closed
+    double sealed_area;             ///< world units squared
     int64_t leak;                   ///< 1: a spawn's region reaches the outside
 } enf_file_provenance;
 
@@ -223,7 +225,8 @@ typedef struct enf_file_view {
     int64_t piece_corner_count;
     const enf_file_corner *piece_corners;
     const int32_t (*piece_face)[2];
-    const int32_t *piece_cover;
+    const int32_t *piece_cover; ///< >= 0 occluded by that cover, -1 open, -2 a sealed crack
+
     const int64_t *seen_offset; ///< fine_count + 1
     int64_t seen_count;
     const int32_t *seen; ///< mesh polygons

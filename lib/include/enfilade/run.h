@@ -54,6 +54,8 @@ typedef struct enf_world_info {
     double volume_of_kind[3], volume_kept;
     int64_t spawns, spawns_in_cells;
     int64_t portals_initial, collapses;
+    int64_t sealed;         ///< cracks between regions that were closed
+    double sealed_area;     ///< world units squared
     int64_t cells, portals; ///< openings: pairs of directed portals
     int64_t portal_polygons, portals_of_cell_max;
     int64_t triangles, detail_triangles, groups, materials;

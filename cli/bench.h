@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef ENF_CLI_BENCH_H
+#define ENF_CLI_BENCH_H
+
+#include "enfilade/base.h"
+
+/// The worlds of the thesis (4.3): sizes, and for each heuristic how far it can go with every room on its
+/// own.
+int cli_bench_thesis(int argc, char **argv);
+
+/// Compiles every level in a folder, each in a process of its own; a row each.
+int cli_bench_levels(int argc, char **argv);
+
+#endif

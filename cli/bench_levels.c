@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE // asprintf, mkstemps
+#endif
+#include "base/timer.h"
+#include "build/write.h"
+#include "cli/bench.h"
+#include "cli/cli.h"
+#include "cli/job.h"
+
+#include <dirent.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int is_level(const struct dirent *entry) {
+    static const char *const endings[] = {".obj", ".obj.gz", ".ply", ".ply.gz",
+                                          ".off", ".off.gz", ".stl", ".stl.gz"};
+    size_t length = strlen(entry->d_name);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        size_t tail = strlen(endings[i]);
+        if (length > tail && strcmp(entry->d_name + length - tail, endings[i]) == 0) return 1;
+    }
+    return 0;
+}
+
+static void print_head(void) {
+    printf("%-20s %7s %6s %7s %8s %6s %8s %7s %6s %7s %6s %4s %7s\n", "level", "s", "MB", "polys", "tets",
+           "ratio", "fine", "active", "region", "cells", "portal", "leak", "spawns");
+}
+
+static void print_row(const char *name, const cli_job *job) {
+    const enf_build *build = &job->build;
+    cli_counts counts = cli_job_count(job);
+    printf("%-20s %7.2f %6.0f %7zu %8" PRId32 " %6.2f %8" PRId32 " %7" PRId64 " %6" PRId32 " %7" PRId32
+           " %6" PRId32 " %4s %3" PRId64 "/%" PRId32 "\n",
+           name, job->seconds, (double)cli_peak_bytes() / 1e6, build->mesh.polygon_count,
+           build->complex.tetrahedron_count,
+           (double)build->complex.cell_count / build->complex.tetrahedron_count, build->complex.cell_count,
+           counts.fine_active, build->regions.region_count, build->cell_count, build->portals.opening_count,
+           build->regions.leak ? "LEAK" : "-", counts.spawns_in_cells, build->regions.spawn_count);
+}
+
+/// In the child: reads, compiles, writes to nowhere that stays.
+static int compile_level(const char *folder, const char *name, const cli_settings *settings) {
+    enf_error error = {0};
+    cli_job job = {0};
+    cli_texts inputs = {0};
+    char *path = NULL;
+    enf_status status =
+        asprintf(&path, "%s/%s", folder, name) < 0 ? enf_fail_memory(&error, "a path") : ENF_OK;
+    if (!status && !cli_texts_add(&inputs, path)) status = enf_fail_memory(&error, "a list");
+    if (!status) status = cli_job_prepare(&job, settings, &error);
+    if (!status) status = cli_job_run(&job, &inputs, NULL, &error);
+    double started = enf_timer_now();
+    if (!status) status = enf_build_write(&job.build, job.options_json, "/dev/null", &error);
+    job.seconds += enf_timer_now() - started;
+    if (!status) print_row(name, &job);
+    cli_job_free(&job);
+    free(inputs.items);
+    free(path);
+    if (status) printf("%-20s %s\n", name, error.text);
+    return cli_finish_output() ? ENF_NO_RESOURCES : (int)status;
+}
+
+/// A process for each, so that one level's memory doesn't count for the next.
+static int run_level(const char *folder, const char *name, const cli_settings *settings) {
+    fflush(stdout);
+    pid_t child = fork();
+    if (child == 0) _exit(compile_level(folder, name, settings));
+    int outcome = 0;
+    if (child < 0 || waitpid(child, &outcome, 0) < 0) {
+        fputs("enfilade bench: can't start a process\n", stderr);
+        return ENF_NO_RESOURCES;
+    }
+    if (WIFEXITED(outcome)) return WEXITSTATUS(outcome);
+    printf("%-20s killed by signal %d\n", name, WTERMSIG(outcome));
+    return ENF_NO_RESOURCES;
+}
+
+static int run_folder(const char *folder, const cli_settings *settings) {
+    struct dirent **entries = NULL;
+    int count = scandir(folder, &entries, is_level, alphasort), worst = ENF_OK;
+    if (count <= 0) {
+        fprintf(stderr, "%s: %s; name a folder with .obj, .ply, .off or .stl files, gzipped or not\n", folder,
+                count < 0 ? "can't be read" : "holds no levels");
+        free(entries);
+        return count < 0 ? ENF_NO_RESOURCES : ENF_BAD_INPUT;
+    }
+    print_head();
+    for (int i = 0; i < count; i++) {
+        int status = run_level(folder, entries[i]->d_name, settings);
+        if (status > worst) worst = status;
+        free(entries[i]);
+    }
+    free(entries);
+    return worst;
+}
+
+int cli_bench_levels(int argc, char **argv) {
+    cli_settings settings = cli_settings_default();
+    cli_option options[] = {CLI_SETTINGS_OPTIONS(settings), {0}};
+    const cli_syntax syntax = {
+        .command = "enfilade bench levels",
+        .usage = "DIR [options of compile]",
+        .summary =
+            "Compiles every level in a folder: seconds and peak memory of read to write, sizes, ratio of\n"
+            "fine cells to tetrahedra, spawn points in kept cells.",
+        .options = options,
+        .operands_min = 1,
+        .operands_max = 1,
+        .operand = "the folder"};
+    cli_texts operands = {0};
+    int status = cli_parse(&syntax, argc, argv, &operands);
+    if (status < 0) status = run_folder(operands.items[0], &settings);
+    cli_settings_free(&settings);
+    free(operands.items);
+    return status;
+}

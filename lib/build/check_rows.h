@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the checker's files share: the world with its exact numbers and a few lists, and the row being filled.
+// Each stage's function adds its rows; a row ends at the first thing that is wrong.
+#ifndef ENF_BUILD_CHECK_ROWS_H
+#define ENF_BUILD_CHECK_ROWS_H
+
+#include "build/check.h"
+#include "build/check_chain.h"
+
+typedef struct enf_checker {
+    const enf_file_view *view;
+    enf_check_report *report;
+    enf_check_row *row; ///< the row being filled
+    enf_check_exact exact;
+    enf_check_chain chain;
+    bool failed; ///< no memory
+
+    int32_t *face_cell;   ///< per face
+    int32_t *facet_first; ///< facet_count + 1 offsets into facet_faces: the faces on each facet
+    int32_t *facet_faces;
+    int32_t *facet_node; ///< per facet: the node that made it, or -1
+    int32_t *cell_first; ///< tetrahedron_count + 1 offsets into tetrahedron_cells
+    int32_t *tetrahedron_cells;
+    int32_t (*tetrahedron_facet)[4]; ///< facet opposite each corner, -1 unknown; filled by enf_check_split
+} enf_checker;
+
+/// Starts a row. `truth` is the detail of a row that holds.
+void enf_check_begin(enf_checker *checker, const char *name, const char *truth);
+
+/// Breaks the row (once; later words are dropped). Returns false.
+bool enf_check_break(enf_checker *checker, const char *format, ...) ENF_PRINTF(2, 3);
+
+/// Notes that memory ran out. Returns false.
+bool enf_check_no_memory(enf_checker *checker);
+
+/// Is the row that was begun last whole so far?
+static inline bool enf_check_holds(const enf_checker *checker) {
+    return checker->row->held && !checker->failed;
+}
+
+static inline enf_check_loop enf_check_face(const enf_checker *checker, int32_t face) {
+    const enf_file_view *view = checker->view;
+    int64_t first = view->face_offset[face];
+    return (enf_check_loop){view->face_corners + first, (int32_t)(view->face_offset[face + 1] - first),
+                            view->facet_plane[view->face_facet[face]]};
+}
+
+/// A cover or piece, on a facet.
+static inline enf_check_loop enf_check_cover(const enf_checker *checker, int32_t cover, int32_t facet) {
+    const enf_file_view *view = checker->view;
+    int64_t first = view->cover_offset[cover];
+    return (enf_check_loop){view->cover_corners + first, (int32_t)(view->cover_offset[cover + 1] - first),
+                            view->facet_plane[facet]};
+}
+
+static inline enf_check_loop enf_check_piece(const enf_checker *checker, int32_t piece, int32_t facet) {
+    const enf_file_view *view = checker->view;
+    int64_t first = view->piece_offset[piece];
+    return (enf_check_loop){view->piece_corners + first, (int32_t)(view->piece_offset[piece + 1] - first),
+                            view->facet_plane[facet]};
+}
+
+static inline enf_check_loop enf_check_portal_loop(const enf_checker *checker, int32_t loop) {
+    const enf_file_view *view = checker->view;
+    int64_t first = view->portal_loop_offset[loop];
+    return (enf_check_loop){view->portal_loop_corners + first,
+                            (int32_t)(view->portal_loop_offset[loop + 1] - first),
+                            view->portal_loop_plane[loop]};
+}
+
+// The stages, in order.
+void enf_check_numbers(enf_checker *checker); ///< check_file.c; sets up checker->exact
+void enf_check_clean(enf_checker *checker);
+void enf_check_tetrahedra(enf_checker *checker);
+void enf_check_split(enf_checker *checker);
+void enf_check_covers(enf_checker *checker);
+void enf_check_connect(enf_checker *checker);
+void enf_check_colour(enf_checker *checker);
+void enf_check_decimate(enf_checker *checker);
+void enf_check_portals(enf_checker *checker);
+void enf_check_file(enf_checker *checker);
+
+#endif
