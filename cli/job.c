@@ -116,6 +116,15 @@ static enf_status read_inputs(cli_job *job, const cli_texts *inputs, enf_error *
     return ENF_OK;
 }
 
+/// A message about the whole world names the inputs, as one about a line does.
+static void name_inputs(const enf_soup *soup, enf_error *error) {
+    for (size_t i = 0; i < soup->file_count; i++)
+        if (strncmp(error->text, soup->files[i], strlen(soup->files[i])) == 0) return;
+    enf_error wrong = *error;
+    enf_fail(error, wrong.status, "%s%s: %.900s", soup->file_count ? soup->files[0] : "input",
+             soup->file_count > 1 ? " and others" : "", wrong.text);
+}
+
 enf_status cli_job_run(cli_job *job, const cli_texts *inputs, cli_progress *progress, enf_error *error) {
     double started = enf_timer_now();
     if (progress) cli_progress_report(progress, "read", 0);
@@ -123,7 +132,10 @@ enf_status cli_job_run(cli_job *job, const cli_texts *inputs, cli_progress *prog
     job->read_seconds = enf_timer_now() - started;
     job->options.progress = progress ? cli_progress_report : NULL;
     job->options.progress_user = progress;
-    if (!status) status = enf_build_run(&job->build, &job->options, error);
+    if (!status) {
+        status = enf_build_run(&job->build, &job->options, error);
+        if (status == ENF_BAD_INPUT) name_inputs(&job->build.soup, error);
+    }
     job->seconds = enf_timer_now() - started;
     job->peak_bytes = cli_peak_bytes();
     return status;

@@ -144,6 +144,10 @@ static void check_points(const enf_build *build, const enf_world *world) {
         check_point(build, world, grid, -1);
     }
     const enf_file_view *file = enf_world_file(world);
+    for (int32_t i = 0; i < file->cell_count; i++) {
+        const int32_t *list = file->cell_triangles + file->cells[i].triangle_first;
+        for (int32_t k = 1; k < file->cells[i].triangle_count; k++) assert_true(list[k - 1] < list[k]);
+    }
     for (int32_t i = 0; i < file->spawn_count; i++)
         assert_int_equal(enf_world_locate(world, file->spawns[i].position, -1).cell, file->spawns[i].cell);
 }

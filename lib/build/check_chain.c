@@ -77,32 +77,40 @@ static bool line_vanishes(enf_check_edge *ends, size_t count) {
     return true;
 }
 
-bool enf_check_chain_vanishes(enf_check_chain *chain, enf_check_exact *exact, int axis) {
-    enf_check_chain_reduce(chain);
-    size_t left = chain->count;
-    if (!enf_array_reserve(chain->edges, chain->capacity, 3 * left)) {
+bool enf_check_chain_take_line(enf_check_chain *chain, enf_check_exact *exact, int axis, int32_t line[2],
+                               bool *cancels) {
+    if (chain->count == 0) return false;
+    if (!enf_array_reserve(chain->edges, chain->capacity, 3 * chain->count)) {
         chain->failed = true;
         return false;
     }
-    bool good = true;
-    while (left > 0 && good) {
-        enf_check_edge line = chain->edges[left - 1], *ends = chain->edges + chain->count;
-        size_t end_count = 0, kept = 0;
-        for (size_t i = 0; i < left; i++) {
-            enf_check_edge edge = chain->edges[i];
-            if (enf_check_turn(exact, axis, line.low, line.high, edge.low) == 0 &&
-                enf_check_turn(exact, axis, line.low, line.high, edge.high) == 0) {
-                ends[end_count++] = (enf_check_edge){edge.low, 0, edge.turns};
-                ends[end_count++] = (enf_check_edge){edge.high, 0, -edge.turns};
-            } else {
-                chain->edges[kept++] = edge;
-            }
+    enf_check_edge *ends = chain->edges + chain->count;
+    size_t end_count = 0, kept = 0;
+    line[0] = chain->edges[chain->count - 1].low;
+    line[1] = chain->edges[chain->count - 1].high;
+    for (size_t i = 0; i < chain->count; i++) {
+        enf_check_edge edge = chain->edges[i];
+        if (enf_check_turn(exact, axis, line[0], line[1], edge.low) == 0 &&
+            enf_check_turn(exact, axis, line[0], line[1], edge.high) == 0) {
+            ends[end_count++] = (enf_check_edge){edge.low, 0, edge.turns};
+            ends[end_count++] = (enf_check_edge){edge.high, 0, -edge.turns};
+        } else {
+            chain->edges[kept++] = edge;
         }
-        left = kept;
-        good = line_vanishes(ends, end_count);
+    }
+    chain->count = kept;
+    *cancels = line_vanishes(ends, end_count);
+    return true;
+}
+
+bool enf_check_chain_vanishes(enf_check_chain *chain, enf_check_exact *exact, int axis) {
+    enf_check_chain_reduce(chain);
+    int32_t line[2];
+    bool good = true;
+    while (good && enf_check_chain_take_line(chain, exact, axis, line, &good)) {
     }
     chain->count = 0;
-    return good;
+    return good && !chain->failed;
 }
 
 // ---------------------------------------------------------------------------------------------- loops

@@ -41,6 +41,11 @@ void enf_check_chain_add_loop(enf_check_chain *chain, const enf_check_exact *exa
 /// Merges equal edges and drops those that cancel.
 void enf_check_chain_reduce(enf_check_chain *chain);
 
+/// Takes the edges on one line out of a reduced chain; line[0], line[1] are two places on it, *cancels tells
+/// whether the edges cancel along it. False if the chain is empty, or without memory.
+bool enf_check_chain_take_line(enf_check_chain *chain, enf_check_exact *exact, int axis, int32_t line[2],
+                               bool *cancels);
+
 /// Does the chain cancel along every line? Its vertices lie in a plane that is not parallel to `axis`.
 /// Empties the chain.
 bool enf_check_chain_vanishes(enf_check_chain *chain, enf_check_exact *exact, int axis);

@@ -6,28 +6,47 @@
 
 #include <stdlib.h>
 
-/// Is the cover inside the area that the facet's faces make up? The outline of that area is what is left of the faces' edges.
-static bool cover_on_facet(enf_checker *checker, const enf_check_loop *cover, int32_t facet) {
-    const enf_file_view *view = checker->view;
+/// Is the cover on the same side of a line of the outline as the facet's faces are? They are all on one side.
+static bool inside_line(enf_checker *checker, const enf_check_loop *cover, int32_t facet, int axis,
+                        const int32_t line[2]) {
     enf_check_exact *exact = &checker->exact;
-    int32_t first = checker->facet_first[facet], end = checker->facet_first[facet + 1];
-    int side = first < end ? view->face_side[checker->facet_faces[first]] : 0;
+    int inner = 0;
+    for (int32_t i = checker->facet_first[facet]; i < checker->facet_first[facet + 1]; i++) {
+        enf_check_loop face = enf_check_face(checker, checker->facet_faces[i]);
+        for (int32_t k = 0; k < face.count; k++) {
+            int side = enf_check_turn(exact, axis, line[0], line[1], face.corners[k].vertex);
+            if (side != 0 && side == -inner) return false;
+            if (side != 0) inner = side;
+        }
+    }
+    for (int32_t k = 0; k < cover->count; k++) {
+        if (enf_check_turn(exact, axis, line[0], line[1], cover->corners[k].vertex) == -inner) return false;
+    }
+    return inner != 0;
+}
+
+/// Is the cover inside the area that the facet's faces make up? What is left of the faces' edges is the
+/// outline of that area, which is convex, and edges inside it that cancel along their line.
+static bool cover_on_facet(enf_checker *checker, const enf_check_loop *cover, int32_t facet) {
+    enf_check_exact *exact = &checker->exact;
+    int32_t first = checker->facet_first[facet], end = checker->facet_first[facet + 1], line[2];
+    int side = first < end ? checker->view->face_side[checker->facet_faces[first]] : 0;
     enf_check_chain_empty(&checker->chain);
     for (int32_t i = first; i < end; i++) {
         enf_check_loop face = enf_check_face(checker, checker->facet_faces[i]);
-        if (view->face_side[checker->facet_faces[i]] == side)
+        if (checker->view->face_side[checker->facet_faces[i]] == side)
             enf_check_chain_add_loop(&checker->chain, exact, &face, 1);
     }
+    if (checker->chain.failed) return enf_check_no_memory(checker);
     enf_check_chain_reduce(&checker->chain);
     int sign, axis = enf_check_axis(exact, cover->plane, &sign);
-    for (size_t e = 0; e < checker->chain.count; e++) {
-        const enf_check_edge *edge = &checker->chain.edges[e];
-        int32_t from = edge->turns > 0 ? edge->low : edge->high, to = edge->turns > 0 ? edge->high : edge->low;
-        for (int32_t i = 0; i < cover->count; i++) {
-            if (enf_check_turn(exact, axis, from, to, cover->corners[i].vertex) == -sign) return false;
-        }
+    bool cancels, outlined = false;
+    while (enf_check_chain_take_line(&checker->chain, exact, axis, line, &cancels)) {
+        if (cancels) continue;
+        outlined = true;
+        if (!inside_line(checker, cover, facet, axis, line)) return false;
     }
-    return checker->chain.count > 0;
+    return outlined && (!checker->chain.failed || enf_check_no_memory(checker));
 }
 
 static bool check_cover(enf_checker *checker, int32_t cover, int32_t facet) {
@@ -40,21 +59,22 @@ static bool check_cover(enf_checker *checker, int32_t cover, int32_t facet) {
     const int32_t *span = view->mesh_polygon_plane[polygon];
     for (int i = 0; i < 3; i++) {
         if (enf_check_side(exact, span[i], loop.plane) != 0)
-            return enf_check_break(checker, "cover %d of facet %d is not in the plane of its polygon %d", (int)cover,
-                                   (int)facet, (int)polygon);
+            return enf_check_break(checker, "cover %d of facet %d is not in the plane of its polygon %d",
+                                   (int)cover, (int)facet, (int)polygon);
     }
     int sign, axis = enf_check_axis(exact, loop.plane, &sign);
     bool same_way = enf_check_normal_sign(exact, span, axis) == sign;
     if (view->cover_side[cover] != same_way)
-        return enf_check_break(checker, "cover %d names the wrong side as the front of polygon %d", (int)cover, (int)polygon);
+        return enf_check_break(checker, "cover %d names the wrong side as the front of polygon %d",
+                               (int)cover, (int)polygon);
     if (!cover_on_facet(checker, &loop, facet))
         return enf_check_break(checker, "cover %d reaches out of its facet %d", (int)cover, (int)facet);
     return true;
 }
 
 /// The covers of a polygon tile it: their outlines make up its outline.
-static bool polygon_is_covered(enf_checker *checker, int32_t polygon, const int32_t *covers, const int32_t *facet_of,
-                               int32_t count) {
+static bool polygon_is_covered(enf_checker *checker, int32_t polygon, const int32_t *covers,
+                               const int32_t *facet_of, int32_t count) {
     const enf_file_view *view = checker->view;
     enf_check_exact *exact = &checker->exact;
     enf_check_chain_empty(&checker->chain);
@@ -86,7 +106,8 @@ static void check_polygons(enf_checker *checker, int32_t *first, int32_t *list, 
 
 void enf_check_covers(enf_checker *checker) {
     const enf_file_view *view = checker->view;
-    enf_check_begin(checker, "split: covers", "every cover lies on its facet, in its polygon's plane, the right way round");
+    enf_check_begin(checker, "split: covers",
+                    "every cover lies on its facet, in its polygon's plane, the right way round");
     int32_t *facet_of = enf_array_new((size_t)view->cover_count, sizeof *facet_of);
     int32_t *first = enf_array_zeroed((size_t)view->mesh_polygon_count + 2, sizeof *first);
     int32_t *list = enf_array_new((size_t)view->cover_count, sizeof *list);
@@ -98,7 +119,8 @@ void enf_check_covers(enf_checker *checker) {
         }
     }
     if (enf_check_holds(checker)) {
-        enf_check_begin(checker, "split: polygons", "the area of every clean polygon lies on faces of fine cells, exactly");
+        enf_check_begin(checker, "split: polygons",
+                        "the area of every clean polygon lies on faces of fine cells, exactly");
         check_polygons(checker, first, list, facet_of);
     }
     free(facet_of);

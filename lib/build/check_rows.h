@@ -68,6 +68,11 @@ static inline enf_check_loop enf_check_portal_loop(const enf_checker *checker, i
                             view->portal_loop_plane[loop]};
 }
 
+/// Can one pass the piece? (Not occluded, and not a sealed crack.)
+static inline bool enf_check_is_open(const enf_file_view *view, int32_t piece) {
+    return view->piece_cover[piece] == -1;
+}
+
 // The stages, in order.
 void enf_check_numbers(enf_checker *checker); ///< check_file.c; sets up checker->exact
 void enf_check_clean(enf_checker *checker);

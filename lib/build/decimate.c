@@ -88,10 +88,34 @@ static bool is_done(const enf_stop *stop, int64_t cells, double weight) {
     return false;
 }
 
-/// The automatic stop: how many of the collapses to do.
-static size_t choose_cut(const enf_collapse *collapses, size_t count) {
-    (void)collapses;
-    return count;
+/// The thesis (4.3.1) saw the aspect, a ratio that has no scale, jump from 2 to 5 where rooms begin, and
+/// proposes a threshold of 3 to 4. With `aspect` the automatic stop looks for the largest jump to a value of
+/// at least the first from one of at most the second; there is nothing to look for once that is passed.
+static const double jump_over = 3, jump_from = 5;
+
+/// Other weights have a scale: with them it looks for the largest jump in the last collapses, this part of
+/// all.
+enum { TAIL_PART = 16 };
+
+/// The automatic stop: how many of the collapses to do. Weights rise and fall, so the jumps are those of the
+/// highest weight so far; the cut is before the collapse with the largest one, the first if there are
+/// several.
+static size_t choose_cut(const enf_collapse *collapses, size_t count, enf_heuristic heuristic) {
+    size_t cut = count, tail = count - count / TAIL_PART;
+    double highest = 0, largest = 1;
+    for (size_t i = 0; i < count; ++i) {
+        double weight = collapses[i].weight;
+        if (!(weight > highest)) continue;
+        bool wanted = i >= tail && highest > 0;
+        if (heuristic == ENF_HEURISTIC_ASPECT)
+            wanted = weight >= jump_over && highest > 0 && highest <= jump_from;
+        if (wanted && weight / highest > largest) {
+            largest = weight / highest;
+            cut = i;
+        }
+        highest = weight;
+    }
+    return cut;
 }
 
 typedef struct task {
@@ -115,6 +139,9 @@ static enf_status collapse_all(task *task, enf_decimation *out, enf_error *error
         collapse->weight = out->next_weight;
         enf_portal_heap_collapse(&task->portals, portal, &collapse->kept, &collapse->gone);
         --cells;
+        if (task->stop->rule == ENF_STOP_AUTO && task->portals.heuristic == ENF_HEURISTIC_ASPECT &&
+            collapse->weight > jump_from)
+            return ENF_OK;
         if (task->progress && out->collapse_count % PROGRESS_STEP == 0 &&
             !task->progress(task->user, (double)out->collapse_count / (double)task->graph->cell_count))
             return enf_fail(error, ENF_NO_RESOURCES, "decimate: cancelled");
@@ -140,17 +167,16 @@ enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, c
         status = collapse_all(&task, out, error);
     else
         status = enf_fail_memory(error, "the list of collapses");
-    out->evaluations = task.portals.evaluations;
-    enf_portal_heap_free(&task.portals);
-    if (status != ENF_OK) {
-        enf_decimation_free(out);
-        return status;
-    }
-    if (stop->rule == ENF_STOP_AUTO) {
-        size_t cut = choose_cut(out->collapses, out->collapse_count);
+    if (status == ENF_OK && stop->rule == ENF_STOP_AUTO) {
+        size_t cut = choose_cut(out->collapses, out->collapse_count, heuristic);
         if (cut < out->collapse_count) out->next_weight = out->collapses[cut].weight;
         out->collapse_count = cut;
     }
-    number_cells(out, graph->cell_count);
-    return ENF_OK;
+    out->evaluations = task.portals.evaluations;
+    enf_portal_heap_free(&task.portals);
+    if (status == ENF_OK)
+        number_cells(out, graph->cell_count);
+    else
+        enf_decimation_free(out);
+    return status;
 }

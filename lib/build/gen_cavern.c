@@ -14,7 +14,7 @@ enum {
     MOUTHS_MAX = 3,  // of a room
     ARC_MAX = 24,    // points of a room's wall from one mouth to the next
     SIDE_POINTS = 5, // of a passage's side, between its ends
-    HEIGHT = 240,    // in grid steps, like everything in the plan
+    HEIGHT = 160,    // in grid steps, like everything in the plan
 };
 
 static const double steps_per_unit = 40.0; // of the plan
@@ -23,9 +23,9 @@ static const double unit_of_tilt =
 static const double tilt[3][3] = {{99, -22, -18}, {18, 99, -22}, {22, 18, 99}};
 static const double mouth_half = 21.0;        // degrees of a room's rim
 static const double degrees_per_point = 13.5; // of the rim
-static const double dent = 0.07;              // of the radius
-static const double narrowing[SIDE_POINTS] = {0.60, 0.30, 0.15, 0.30, 0.60};
-static const uint64_t dent_seed = 1;
+static const double dent = 0.05;              // of the radius
+static const double narrowing[SIDE_POINTS] = {0.55, 0.36, 0.14, 0.36, 0.55};
+static const uint64_t dent_seed = 922;
 
 typedef struct room {
     double x, y, radius;

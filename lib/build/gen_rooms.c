@@ -6,7 +6,7 @@
 
 enum { ROOM_COUNT = 4, BREAKS = 5, LEVELS = 2, PLAIN_POINTS = 16 };
 
-static const double level[LEVELS] = {0.0, 3.0};
+static const double level[LEVELS] = {0.0, 3.5};
 
 /// A room in plan. It has one door in a wall across x, from y[door_y] to y[door_y + 1], and one across y,
 /// alike.
@@ -17,10 +17,10 @@ typedef struct room {
 } room;
 
 static const room rooms[ROOM_COUNT] = {
-    {{0.3, 2.0, 3.6, 5.4, 8.5}, {-0.1, 1.5, 3.1, 4.8, 7.4}, 2, 2, true, true},
-    {{9.1, 11.0, 12.9, 14.6, 16.2}, {-1.7, 0.7, 3.1, 4.8, 6.6}, 2, 2, false, true},
-    {{10.8, 12.9, 14.6, 16.5, 18.4}, {7.2, 9.1, 10.9, 12.6, 15.2}, 1, 2, false, false},
-    {{1.8, 3.6, 5.4, 7.7, 9.9}, {8.2, 10.9, 12.6, 13.9, 15.2}, 1, 1, true, false},
+    {{0.5, 2.2, 4.0, 4.9, 7.7}, {-0.7, 1.3, 3.4, 4.3, 7.3}, 2, 2, true, true},
+    {{8.4, 10.8, 13.2, 14.1, 17.2}, {-0.9, 1.2, 3.4, 4.3, 6.1}, 2, 2, false, true},
+    {{10.5, 13.2, 14.1, 15.7, 17.3}, {7.3, 9.2, 11.2, 12.1, 14.7}, 1, 2, false, false},
+    {{1.6, 4.0, 4.9, 7.3, 9.7}, {8.7, 11.2, 12.1, 13.8, 15.5}, 1, 1, true, false},
 };
 
 /// From the east or north door of one room to the west or south door of another.
@@ -170,12 +170,12 @@ typedef struct distortion {
     double pull[8][3]; ///< by corner: bit 0 east, bit 1 north, bit 2 up
 } distortion;
 
-static const double shrink = 0.8; // about their middles, so that they stay apart
+static const double shrink = 0.76; // about their middles, so that they stay apart
 static const distortion distortions[ROOM_COUNT] = {
-    {{3.6, -4.2, 3.2}, {[1] = {0.7, -0.4, -0.2}, [3] = {-0.2, -0.6, 0.8}}},
-    {{4.5, 4.1, 4.3}, {[0] = {0.6, 0.9, -0.6}, [5] = {0.2, -0.3, -0.1}}},
-    {{-4.1, 4.3, 2.8}, {[1] = {-0.7, 0.4, -0.9}, [7] = {0.4, 0.6, -0.4}}},
-    {{-3.9, -3.4, -3.1}, {[3] = {0.9, -0.4, -0.9}, [5] = {0.5, -0.4, -0.5}}},
+    {{3.2, 4.8, -3.5}, {[5] = {0.1, 0, 0.4}, [6] = {0, 0.6, -0.3}}},
+    {{-3.8, -4.8, -2.7}, {[1] = {-0.7, 0.4, 0.7}, [6] = {-0.9, -0.7, -0.6}}},
+    {{-4.7, 3.3, -4.3}, {[3] = {0, -0.5, 0.6}, [4] = {0.4, -0.1, 0}}},
+    {{-2.8, -2.7, 4.2}, {[2] = {0.6, 0.9, 0.4}}},
 };
 
 static void distort(const room *box, const distortion *how, double point[3]) {

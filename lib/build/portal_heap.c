@@ -105,7 +105,8 @@ static double bound_weight(const enf_portal_heap *portals, const enf_portal *por
 /// Takes small neighbours that fill dents of a large cell as parts of it for the next silhouette.
 static bool plug_dents(enf_portal_heap *portals, int32_t cell, const double normal[3]) {
     enf_surface *surface = &portals->surface;
-    if (surface->bodies[cell].side_count < PLUGGED_SIDES) return true;
+    if (surface->bodies[cell].side_count < PLUGGED_SIDES || surface->bodies[cell].fine_count == 1)
+        return true;
     for (int32_t number = portals->first_portal[cell]; number >= 0;) {
         const enf_portal *portal = &portals->portals[number];
         int side = side_of(portal, cell);

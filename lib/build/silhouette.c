@@ -18,10 +18,7 @@
 
 /// Only the time depends on these: edges in a block that is halved, how often, and bands per square root of
 /// the edges.
-enum { LARGE_BLOCK = 24, MOST_HALVINGS = 12 };
-#ifndef BAND_DIVISOR
-#define BAND_DIVISOR 2
-#endif
+enum { LARGE_BLOCK = 24, MOST_HALVINGS = 12, BAND_DIVISOR = 2 };
 
 typedef struct enf_slab_edge {
     double left, right; ///< height at the borders of the slab

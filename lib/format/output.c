@@ -141,11 +141,20 @@ static bool publish(enf_output *output) {
     return true;
 }
 
+/// Why writing failed. An error that a full buffer met earlier has lost its number: the next write meets it
+/// again.
+static int find_reason(FILE *file) {
+    if (errno) return errno;
+    clearerr(file);
+    if (fputc(' ', file) == EOF || fflush(file) != 0) return errno ? errno : EIO;
+    return EIO;
+}
+
 enf_status enf_output_commit(enf_output *output, enf_error *error) {
     enf_status status = ENF_OK;
     errno = 0;
     if (fflush(output->file) != 0 || ferror(output->file) || (!output->direct && !publish(output)))
-        status = cannot_write(error, output->path, errno ? errno : EIO);
+        status = cannot_write(error, output->path, find_reason(output->file));
     enf_output_discard(output);
     return status;
 }

@@ -226,7 +226,6 @@ typedef struct enf_file_view {
     const enf_file_corner *piece_corners;
     const int32_t (*piece_face)[2];
     const int32_t *piece_cover; ///< >= 0 occluded by that cover, -1 open, -2 a sealed crack
-
     const int64_t *seen_offset; ///< fine_count + 1
     int64_t seen_count;
     const int32_t *seen; ///< mesh polygons
