@@ -7,7 +7,7 @@
 
 #include "cli/job.h"
 
-/// The report (--report). Its keys are fixed, see the README.
+/// The report (--report). Its keys are fixed: scripts rely on them.
 void cli_report_json(const cli_job *job, FILE *out);
 
 /// The two or three lines that every compilation ends with.

@@ -128,11 +128,12 @@ static int32_t draw_label(drawing *draw, const enf_storey *storey, int32_t first
     return next;
 }
 
-static void draw_lines(drawing *draw, const enf_storey *storey, bool portals) {
+/// `kind`: ENF_PLAN_WALL, ENF_PLAN_FLOOR, or 0 for portals.
+static void draw_lines(drawing *draw, const enf_storey *storey, int kind) {
     fputs("<path d=\"", draw->out);
     for (int32_t i = 0; i < storey->line_count; i++) {
         const enf_plan_line *line = &storey->lines[i];
-        if ((line->portal >= 0) != portals) continue;
+        if ((line->portal < 0 ? line->portal : 0) != kind) continue;
         fprintf(draw->out, "M%.2f %.2fL%.2f %.2f", page_x(draw, line->from[0]), page_y(draw, line->from[1]),
                 page_x(draw, line->to[0]), page_y(draw, line->to[1]));
     }
@@ -208,12 +209,14 @@ static void draw_storey(drawing *draw, int number) {
             draw->origin[0], draw->origin[1], draw->panel[0], draw->panel[1]);
     fputs("<g class=\"cells\">\n", out);
     for (int32_t i = 0; i < storey->area_count;) i = draw_cell(draw, storey, i);
+    fputs("</g>\n<g class=\"floors\">\n", out);
+    draw_lines(draw, storey, ENF_PLAN_FLOOR);
     fputs("</g>\n<g class=\"walls\">\n", out);
-    draw_lines(draw, storey, false);
+    draw_lines(draw, storey, ENF_PLAN_WALL);
     fputs("</g>\n<g class=\"flat\">\n", out);
     draw_flat_portals(draw, number);
     fputs("</g>\n<g class=\"portals\">\n", out);
-    draw_lines(draw, storey, true);
+    draw_lines(draw, storey, 0);
     fputs("</g>\n<g class=\"numbers\">\n", out);
     for (int32_t i = 0; i < storey->area_count;) i = draw_label(draw, storey, i);
     fputs("</g>\n<g class=\"spawns\">\n", out);
@@ -235,6 +238,7 @@ static void draw_head(const drawing *draw, const char *title, double width, doub
             ".panel { font-size: 14px; font-weight: bold; fill: #3a3f47 }\n"
             ".ground { fill: #eceae5 }\n"
             ".cells path { stroke-width: 0.7; stroke-linejoin: round }\n"
+            ".floors path { stroke: #23262b; stroke-opacity: 0.28; stroke-width: 0.9; fill: none }\n"
             ".walls path { stroke: %s; stroke-width: 2; stroke-linecap: round; fill: none }\n"
             ".portals path { stroke: %s; stroke-width: 4; stroke-linecap: round; fill: none }\n"
             ".flat path { stroke: %s; stroke-width: 1.4; stroke-linejoin: round }\n"
@@ -274,8 +278,8 @@ static void draw_scale_bar(const drawing *draw, double width, double y) {
     fprintf(
         draw->out,
         "<path d=\"M%.1f %.1fv-6v12v-6H%.1fv-6v12\" stroke=\"#3a3f47\" stroke-width=\"1.6\" fill=\"none\"/>\n"
-        "<text class=\"legend\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%g units</text>\n",
-        left, y, right, (left + right) / 2, y + 22, length);
+        "<text class=\"legend\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%g unit%s</text>\n",
+        left, y, right, (left + right) / 2, y + 22, length, length == 1 ? "" : "s");
 }
 
 static void draw_legend(const drawing *draw, double width, double y) {

@@ -124,13 +124,10 @@ static bool add_area(cutter *cut, int32_t cell) {
     return true;
 }
 
-static bool add_line(enf_storey *storey, double ends[2][2], int count, int32_t portal) {
-    if (count < 2) return true;
+bool enf_plan_add_line(enf_storey *storey, const double from[2], const double to[2], int32_t portal) {
     if (!enf_array_reserve(storey->lines, storey->line_capacity, storey->line_count + 1)) return false;
-    enf_plan_line *line = &storey->lines[storey->line_count++];
-    memcpy(line->from, ends[0], sizeof line->from);
-    memcpy(line->to, ends[1], sizeof line->to);
-    line->portal = portal;
+    storey->lines[storey->line_count++] =
+        (enf_plan_line){.from = {from[0], from[1]}, .to = {to[0], to[1]}, .portal = portal};
     return true;
 }
 
@@ -153,7 +150,7 @@ static bool cut_piece(cutter *cut, int32_t piece) {
         if (is_crossed(previous, at, height)) cross(previous, at, height, ends[count++]);
         previous = at;
     }
-    return add_line(cut->storey, ends, count, -1);
+    return count < 2 || enf_plan_add_line(cut->storey, ends[0], ends[1], ENF_PLAN_WALL);
 }
 
 static bool cut_portal(cutter *cut, int32_t portal) {
@@ -170,7 +167,7 @@ static bool cut_portal(cutter *cut, int32_t portal) {
             if (is_crossed(previous, at, height)) cross(previous, at, height, ends[count++]);
             memcpy(previous, at, sizeof at);
         }
-        if (!add_line(cut->storey, ends, count, portal)) return false;
+        if (count == 2 && !enf_plan_add_line(cut->storey, ends[0], ends[1], portal)) return false;
     }
     return true;
 }
@@ -226,6 +223,7 @@ enf_status enf_plan_make(enf_plan *plan, const enf_file_view *view, int up, enf_
         plan->storeys[i].height = heights[i];
         good = cut_storey(&cut, &plan->storeys[i]);
     }
+    good = good && enf_storeys_outline(plan, view);
     free(cut.at);
     free(cut.face_cell);
     free(cut.points);

@@ -7,6 +7,7 @@
 #include "enfilade/format.h"
 
 enum { ENF_STOREYS_MAX = 12 };
+enum { ENF_PLAN_WALL = -1, ENF_PLAN_FLOOR = -2 };
 
 /// Where a cut meets a fine cell: a convex polygon, counter-clockwise on the page (y up).
 typedef struct enf_plan_area {
@@ -15,7 +16,8 @@ typedef struct enf_plan_area {
 
 typedef struct enf_plan_line {
     double from[2], to[2];
-    int32_t portal; ///< the even portal that the cut meets here; -1: a wall
+    int32_t portal; ///< the even portal that the cut meets here; ENF_PLAN_WALL; ENF_PLAN_FLOOR: the rim of a
+                    ///< floor (or table, or step) below the cut
 } enf_plan_line;
 
 typedef struct enf_storey {
@@ -24,7 +26,7 @@ typedef struct enf_storey {
     enf_plan_area *areas; ///< ascending cells
     double (*corners)[2];
     int32_t line_count;
-    enf_plan_line *lines; ///< walls first
+    enf_plan_line *lines;
     size_t area_capacity, corner_count, corner_capacity, line_capacity;
 } enf_storey;
 
@@ -48,6 +50,12 @@ double enf_plan_project(const enf_plan *plan, const double world[3], double page
 /// between it and what is above it; the next cut is always the one that serves the largest area of floor not
 /// yet served. Returns how many, at least 1; 0 without memory.
 int enf_storeys_find(const enf_plan *plan, const enf_file_view *view, double heights[ENF_STOREYS_MAX]);
+
+/// Adds the rims of the floors below each storey's cut, down to the cut below. False without memory.
+bool enf_storeys_outline(enf_plan *plan, const enf_file_view *view);
+
+/// Adds a line to a storey. False without memory.
+bool enf_plan_add_line(enf_storey *storey, const double from[2], const double to[2], int32_t portal);
 
 /// Grid to world.
 void enf_plan_grid_to_world(const enf_file_view *view, const double grid[3], double world[3]);

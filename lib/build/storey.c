@@ -18,6 +18,7 @@ typedef struct slab {
     double area;
     double low[2], high[2];
     double middle[2], height; ///< of its corners
+    double normal[3];         ///< length 1; page axes, third up
 } slab;
 
 /// Heights at which a cut serves a floor.
@@ -57,7 +58,9 @@ static void measure(const enf_plan *plan, const enf_file_view *view, slab *out) 
     // The page's axes are right-handed as the world's are; a mirrored grid turns polygons over.
     double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     out->area = length / 2;
-    out->slope = length > 0 ? normal[2] / length * view->frame->handedness : 0;
+    for (int a = 0; a < 3; a++)
+        out->normal[a] = length > 0 ? normal[a] / length * view->frame->handedness : 0;
+    out->slope = out->normal[2];
 }
 
 /// Every polygon that a kept fine cell sees, measured.
@@ -209,4 +212,73 @@ int enf_storeys_find(const enf_plan *plan, const enf_file_view *view, double hei
     free(spans);
     free(ends);
     return made;
+}
+
+/// An edge of a floor polygon.
+typedef struct rim {
+    int32_t low, high; ///< points
+    const slab *floor;
+    int storey;
+} rim;
+
+static int compare_rims(const void *a, const void *b) {
+    const rim *x = a, *y = b;
+    if (x->low != y->low) return x->low < y->low ? -1 : 1;
+    if (x->high != y->high) return x->high < y->high ? -1 : 1;
+    return (x->floor > y->floor) - (x->floor < y->floor);
+}
+
+static int storey_above(const enf_plan *plan, double height) {
+    for (int i = 0; i < plan->storey_count; i++)
+        if (plan->storeys[i].height >= height) return i;
+    return -1;
+}
+
+static size_t collect_rims(const enf_plan *plan, const enf_file_view *view, const slab *slabs, size_t count,
+                           rim *rims) {
+    size_t made = 0;
+    for (size_t i = 0; i < count; i++) {
+        int storey = slabs[i].slope > steepest_floor ? storey_above(plan, slabs[i].height) : -1;
+        int64_t first = view->mesh_polygon_corner[slabs[i].polygon],
+                end = view->mesh_polygon_corner[slabs[i].polygon + 1];
+        for (int64_t c = first; storey >= 0 && c < end; c++) {
+            int32_t a = view->mesh_corners[c], b = view->mesh_corners[c + 1 < end ? c + 1 : first];
+            rims[made++] =
+                (rim){.low = a < b ? a : b, .high = a < b ? b : a, .floor = &slabs[i], .storey = storey};
+        }
+    }
+    qsort(rims, made, sizeof *rims, compare_rims);
+    return made;
+}
+
+/// Two polygons that lie flat against each other have no rim between them.
+static bool is_seam(const rim *a, const rim *b) {
+    const double *n = a->floor->normal, *m = b->floor->normal;
+    return a->low == b->low && a->high == b->high && n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.9999;
+}
+
+static bool add_rims(enf_plan *plan, const enf_file_view *view, const rim *rims, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if ((i > 0 && is_seam(&rims[i - 1], &rims[i])) || (i + 1 < count && is_seam(&rims[i], &rims[i + 1])))
+            continue;
+        double page[2][2], world[3];
+        for (int k = 0; k < 2; k++) {
+            enf_plan_grid_to_world(view, view->points[k ? rims[i].high : rims[i].low], world);
+            enf_plan_project(plan, world, page[k]);
+        }
+        if (!enf_plan_add_line(&plan->storeys[rims[i].storey], page[0], page[1], ENF_PLAN_FLOOR))
+            return false;
+    }
+    return true;
+}
+
+bool enf_storeys_outline(enf_plan *plan, const enf_file_view *view) {
+    size_t count;
+    slab *slabs = collect(plan, view, &count);
+    rim *rims = enf_array_new((size_t)view->mesh_corner_count, sizeof *rims);
+    bool good = slabs && rims;
+    if (good) good = add_rims(plan, view, rims, collect_rims(plan, view, slabs, count, rims));
+    free(slabs);
+    free(rims);
+    return good;
 }
