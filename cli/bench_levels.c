@@ -3,6 +3,7 @@
 #define _GNU_SOURCE // asprintf, mkstemps
 #endif
 #include "base/timer.h"
+#include "build/check.h"
 #include "build/write.h"
 #include "cli/bench.h"
 #include "cli/cli.h"
@@ -27,25 +28,54 @@ static int is_level(const struct dirent *entry) {
     return 0;
 }
 
-static void print_head(void) {
-    printf("%-20s %7s %6s %7s %8s %6s %8s %7s %6s %7s %6s %4s %7s\n", "level", "s", "MB", "polys", "tets",
-           "ratio", "fine", "active", "region", "cells", "portal", "leak", "spawns");
+typedef struct verdict {
+    bool asked, held;
+    double seconds;
+    char first[256]; ///< the first broken invariant
+} verdict;
+
+/// What `enfilade check` would say of the file.
+static enf_status check_build(const cli_job *job, verdict *verdict, enf_error *error) {
+    enf_image image;
+    enf_status status = enf_image_make(&image, &job->build, job->options_json, error);
+    if (status) return status;
+    enf_check_report *report = calloc(1, sizeof *report);
+    double started = enf_timer_now();
+    status = report ? enf_world_check(&image.view, report, error) : enf_fail_memory(error, "the report");
+    verdict->seconds = enf_timer_now() - started;
+    verdict->held = status == ENF_OK;
+    if (status == ENF_CHECK_FAILED) {
+        snprintf(verdict->first, sizeof verdict->first, "%.255s", report->first);
+        status = ENF_OK;
+    }
+    free(report);
+    enf_image_free(&image);
+    return status;
 }
 
-static void print_row(const char *name, const cli_job *job) {
+static void print_head(void) {
+    printf("%-20s %7s %6s %7s %8s %6s %8s %7s %6s %7s %6s %4s %7s  %s\n", "level", "s", "MB", "polys", "tets",
+           "ratio", "fine", "active", "region", "cells", "portal", "leak", "spawns", "check");
+}
+
+static void print_row(const char *name, const cli_job *job, double peak, const verdict *verdict) {
     const enf_build *build = &job->build;
     cli_counts counts = cli_job_count(job);
     printf("%-20s %7.2f %6.0f %7zu %8" PRId32 " %6.2f %8" PRId32 " %7" PRId64 " %6" PRId32 " %7" PRId32
-           " %6" PRId32 " %4s %3" PRId64 "/%" PRId32 "\n",
-           name, job->seconds, (double)cli_peak_bytes() / 1e6, build->mesh.polygon_count,
-           build->complex.tetrahedron_count,
+           " %6" PRId32 " %4s %3" PRId64 "/%-3" PRId32 "  ",
+           name, job->seconds, peak / 1e6, build->mesh.polygon_count, build->complex.tetrahedron_count,
            (double)build->complex.cell_count / build->complex.tetrahedron_count, build->complex.cell_count,
            counts.fine_active, build->regions.region_count, build->cell_count, build->portals.opening_count,
            build->regions.leak ? "LEAK" : "-", counts.spawns_in_cells, build->regions.spawn_count);
+    if (verdict->held)
+        printf("holds (%.2f s)\n", verdict->seconds);
+    else
+        printf("%s%s\n", verdict->asked ? "BROKEN: " : "-", verdict->first);
 }
 
 /// In the child: reads, compiles, writes to nowhere that stays.
-static int compile_level(const char *folder, const char *name, const cli_settings *settings) {
+static int compile_level(const char *folder, const char *name, const cli_settings *settings, bool check) {
+    verdict verdict = {.asked = check};
     enf_error error = {0};
     cli_job job = {0};
     cli_texts inputs = {0};
@@ -58,19 +88,22 @@ static int compile_level(const char *folder, const char *name, const cli_setting
     double started = enf_timer_now();
     if (!status) status = enf_build_write(&job.build, job.options_json, "/dev/null", &error);
     job.seconds += enf_timer_now() - started;
-    if (!status) print_row(name, &job);
+    double peak = (double)cli_peak_bytes();
+    if (!status && check) status = check_build(&job, &verdict, &error);
+    if (!status) print_row(name, &job, peak, &verdict);
     cli_job_free(&job);
     free(inputs.items);
     free(path);
     if (status) printf("%-20s %s\n", name, error.text);
+    if (!status && check && !verdict.held) status = ENF_CHECK_FAILED;
     return cli_finish_output() ? ENF_NO_RESOURCES : (int)status;
 }
 
 /// A process for each, so that one level's memory doesn't count for the next.
-static int run_level(const char *folder, const char *name, const cli_settings *settings) {
+static int run_level(const char *folder, const char *name, const cli_settings *settings, bool check) {
     fflush(stdout);
     pid_t child = fork();
-    if (child == 0) _exit(compile_level(folder, name, settings));
+    if (child == 0) _exit(compile_level(folder, name, settings, check));
     int outcome = 0;
     if (child < 0 || waitpid(child, &outcome, 0) < 0) {
         fputs("enfilade bench: can't start a process\n", stderr);
@@ -81,7 +114,7 @@ static int run_level(const char *folder, const char *name, const cli_settings *s
     return ENF_NO_RESOURCES;
 }
 
-static int run_folder(const char *folder, const cli_settings *settings) {
+static int run_folder(const char *folder, const cli_settings *settings, bool check) {
     struct dirent **entries = NULL;
     int count = scandir(folder, &entries, is_level, alphasort), worst = ENF_OK;
     if (count <= 0) {
@@ -92,7 +125,7 @@ static int run_folder(const char *folder, const cli_settings *settings) {
     }
     print_head();
     for (int i = 0; i < count; i++) {
-        int status = run_level(folder, entries[i]->d_name, settings);
+        int status = run_level(folder, entries[i]->d_name, settings, check);
         if (status > worst) worst = status;
         free(entries[i]);
     }
@@ -102,10 +135,14 @@ static int run_folder(const char *folder, const cli_settings *settings) {
 
 int cli_bench_levels(int argc, char **argv) {
     cli_settings settings = cli_settings_default();
-    cli_option options[] = {CLI_SETTINGS_OPTIONS(settings), {0}};
+    bool check = false;
+    cli_option options[] = {
+        {"--check", 0, CLI_FLAG, &check, NULL, "check every invariant of each result", NULL, false},
+        CLI_SETTINGS_OPTIONS(settings),
+        {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench levels",
-        .usage = "DIR [options of compile]",
+        .usage = "DIR [--check] [options of compile]",
         .summary =
             "Compiles every level in a folder: seconds and peak memory of read to write, sizes, ratio of\n"
             "fine cells to tetrahedra, spawn points in kept cells.",
@@ -115,7 +152,7 @@ int cli_bench_levels(int argc, char **argv) {
         .operand = "the folder"};
     cli_texts operands = {0};
     int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status < 0) status = run_folder(operands.items[0], &settings);
+    if (status < 0) status = run_folder(operands.items[0], &settings, check);
     cli_settings_free(&settings);
     free(operands.items);
     return status;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plays the recorded collapses back: a stop is good as long as no two spawn points share a cell.
+// How far can decimation go before two spawn points share a cell?
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE // asprintf, mkstemps
 #endif
-#include "base/array.h"
 #include "build/gen.h"
 #include "cli/bench.h"
 #include "cli/cli.h"
@@ -26,58 +25,61 @@ typedef struct reach {
     double done, next; ///< weight of the last collapse that was fine, and of the first that was not
 } reach;
 
-static int32_t find(int32_t *parent, int32_t cell) {
-    while (parent[cell] != cell) {
-        parent[cell] = parent[parent[cell]];
-        cell = parent[cell];
-    }
-    return cell;
-}
-
-static bool are_apart(int32_t *parent, const int32_t *spawns, int32_t count) {
-    for (int32_t i = 0; i < count; i++) {
-        if (spawns[i] < 0) return false;
+/// Does every spawn point have a cell of its own?
+static bool are_apart(const enf_build *build) {
+    const enf_regions *regions = &build->regions;
+    for (int32_t i = 0; i < regions->spawn_count; i++) {
+        int32_t cell = regions->spawn_cell[i] < 0 ? -1 : build->cell_of[regions->spawn_cell[i]];
+        if (cell < 0) return false;
         for (int32_t k = 0; k < i; k++)
-            if (find(parent, spawns[i]) == find(parent, spawns[k])) return false;
+            if (build->cell_of[regions->spawn_cell[k]] == cell) return false;
     }
     return true;
 }
 
-static enf_status play(const enf_build *build, reach *out, enf_error *error) {
-    const enf_regions *regions = &build->regions;
-    int32_t cells = build->complex.cell_count, nodes = 0;
-    int32_t *node = enf_array_new((size_t)cells, sizeof *node),
-            *parent = enf_array_new((size_t)cells, sizeof *parent);
-    int32_t *spawns = enf_array_new((size_t)regions->spawn_count, sizeof *spawns);
-    enf_status status = node && parent && spawns ? ENF_OK : enf_fail_memory(error, "the replay");
-    *out = (reach){.cells = -1, .next = INFINITY};
-    if (!status) {
-        for (int32_t i = 0; i < cells; i++) node[i] = build->cell_of[i] >= 0 ? nodes++ : -1;
-        for (int32_t i = 0; i < nodes; i++) parent[i] = i;
-        for (int32_t i = 0; i < regions->spawn_count; i++)
-            spawns[i] = regions->spawn_cell[i] < 0 ? -1 : node[regions->spawn_cell[i]];
-        size_t done = 0, all = build->decimation.collapse_count;
-        const enf_collapse *collapses = build->decimation.collapses;
-        while (are_apart(parent, spawns, regions->spawn_count)) {
-            out->cells = nodes - (int64_t)done;
-            if (done) out->done = fmax(out->done, collapses[done - 1].weight);
-            if (done == all) break;
-            out->next = collapses[done].weight;
-            parent[find(parent, collapses[done].gone)] = find(parent, collapses[done].kept);
-            done++;
-        }
-    }
-    free(node);
-    free(parent);
-    free(spawns);
+/// Compiles down to so many cells.
+static enf_status compile_to(cli_job *job, const cli_texts *inputs, cli_settings settings, int64_t cells,
+                             enf_error *error) {
+    char stop[40];
+    snprintf(stop, sizeof stop, "cells=%" PRId64, cells);
+    settings.stop = stop;
+    enf_status status = cli_job_prepare(job, &settings, error);
+    if (!status) status = cli_job_run(job, inputs, NULL, error);
+    job->settings = NULL; // it ends with this call
     return status;
+}
+
+/// The fewest cells that keep the spawn points apart: cells only ever grow together, so it can be searched
+/// for by halving.
+static enf_status find_reach(const cli_texts *inputs, cli_settings settings, int64_t most, reach *out,
+                             enf_error *error) {
+    *out = (reach){.cells = -1};
+    int64_t low = 1, high = most; // below low: not apart
+    while (low <= high) {
+        int64_t middle = low + (high - low) / 2;
+        cli_job job = {0};
+        enf_status status = compile_to(&job, inputs, settings, middle, error);
+        bool apart = !status && are_apart(&job.build);
+        if (apart) {
+            const enf_decimation *decimation = &job.build.decimation;
+            *out = (reach){.cells = job.build.cell_count, .next = decimation->next_weight};
+            for (size_t i = 0; i < decimation->collapse_count; i++)
+                out->done = fmax(out->done, decimation->collapses[i].weight);
+            high = middle - 1;
+        } else {
+            low = middle + 1;
+        }
+        cli_job_free(&job);
+        if (status) return status;
+    }
+    return ENF_OK;
 }
 
 /// Writes the world to a temporary file; its path is the caller's to free and unlink.
 static enf_status make_world(const char *name, const char *const *settings, size_t count, char **path,
                              enf_error *error) {
     const char *folder = getenv("TMPDIR");
-    if (asprintf(path, "%s/enfilade-XXXXXX.obj", folder ? folder : "/tmp") < 0) {
+    if (asprintf(path, "%s/enfilade-XXXXXX.obj", folder ? folder : P_tmpdir) < 0) {
         *path = NULL;
         return enf_fail_memory(error, "a path");
     }
@@ -102,30 +104,29 @@ static void print_reach(const reach *reach, int32_t rooms) {
                reach->next);
 }
 
+static void print_sizes(const char *name, const cli_job *job) {
+    cli_counts counts = cli_job_count(job);
+    const enf_complex *complex = &job->build.complex;
+    printf("%-24s %6" PRId32 " %6" PRId32 " %+6.1f %% %6" PRId32 " %6" PRId64 " %6" PRId64 " %5" PRId32, name,
+           complex->tetrahedron_count, complex->tetrahedra_cut,
+           100.0 * (complex->cell_count - complex->tetrahedron_count) / complex->tetrahedron_count,
+           complex->cell_count, counts.fine_discarded, counts.fine_active, job->build.regions.spawn_count);
+}
+
 static enf_status run_world(const char *name, const char *const *gen_settings, size_t gen_count,
                             cli_settings settings, enf_error *error) {
     char *path = NULL;
     enf_status status = make_world(name, gen_settings, gen_count, &path, error);
     cli_texts inputs = {0};
     if (!status && !cli_texts_add(&inputs, path)) status = enf_fail_memory(error, "a list");
-    settings.stop = "cells=1";
     for (int heuristic = 0; !status && heuristic < ENF_HEURISTIC_COUNT; heuristic++) {
         cli_job job = {0};
-        settings.heuristic = heuristic;
-        status = cli_job_prepare(&job, &settings, error);
-        if (!status) status = cli_job_run(&job, &inputs, NULL, error);
         reach reached = {0};
-        if (!status) status = play(&job.build, &reached, error);
-        if (!status && heuristic == 0) {
-            cli_counts counts = cli_job_count(&job);
-            const enf_complex *complex = &job.build.complex;
-            printf("%-24s %6" PRId32 " %6" PRId32 " %+6.1f %% %6" PRId32 " %6" PRId64 " %6" PRId64
-                   " %5" PRId32,
-                   name, complex->tetrahedron_count, complex->tetrahedra_cut,
-                   100.0 * (complex->cell_count - complex->tetrahedron_count) / complex->tetrahedron_count,
-                   complex->cell_count, counts.fine_discarded, counts.fine_active,
-                   job.build.regions.spawn_count);
-        }
+        settings.heuristic = heuristic;
+        status = compile_to(&job, &inputs, settings, 1, error);
+        int64_t most = job.build.cell_count + (int64_t)job.build.decimation.collapse_count;
+        if (!status && heuristic == 0) print_sizes(name, &job);
+        if (!status) status = find_reach(&inputs, settings, most, &reached, error);
         if (!status) print_reach(&reached, job.build.regions.spawn_count);
         cli_job_free(&job);
     }

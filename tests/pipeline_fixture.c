@@ -158,9 +158,7 @@ double *pipeline_region_volumes(const enf_build *build, size_t *count) {
     assert_non_null(volumes);
     *count = 0;
     for (int32_t r = 0; r < regions->region_count; r++) {
-        double volume = regions->volume[r] * step * step * step;
-        double area = (regions->front_area[r] + regions->back_area[r]) * step * step;
-        if (2 * volume > build->mesh.weld * area) volumes[(*count)++] = volume;
+        if (!regions->hairline[r]) volumes[(*count)++] = regions->volume[r] * step * step * step;
     }
     qsort(volumes, *count, sizeof *volumes, compare_volumes);
     return volumes;

@@ -15,7 +15,7 @@
 
 enum { WORDS_MAX = 64 };
 
-static char folder[] = "/tmp/enfilade-test-XXXXXX";
+static char folder[] = P_tmpdir "/enfilade-test-XXXXXX";
 
 bool enter_test_folder(void) {
     return mkdtemp(folder) && chdir(folder) == 0;

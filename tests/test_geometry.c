@@ -40,8 +40,7 @@ static long scaled(long usual) {
     return scale > 0 ? (long)ceil((double)usual * scale) : usual;
 }
 
-// ---- Scenes: points and planes
-// ------------------------------------------------------------------------------------------
+// ---- Scenes: points and planes ----
 
 typedef struct scene {
     int kind;
@@ -178,13 +177,12 @@ static bool random_crossing(scene *s, enf_geometry *geometry, uint64_t *state, i
     return false;
 }
 
-// ---- Predicates
-// ---------------------------------------------------------------------------------------------------------
+// ---- Predicates ----
 
 static void orientation_of_four_points_is_right(void **unused) {
     (void)unused;
     uint64_t state = seed;
-    for (long i = 0; i < scaled(60000); i++) {
+    for (long i = 0; i < scaled(40000); i++) {
         scene s = {.kind = (int)(i % SCENE_KINDS)};
         random_points(&s, &state);
         for (int k = 0; k < 10; k++) {
@@ -199,7 +197,7 @@ static void orientation_of_four_points_is_right(void **unused) {
 static void side_of_a_plane_is_right(void **unused) {
     (void)unused;
     uint64_t state = seed + 1, zeros = 0, cases = 0, filter = 0, exact = 0;
-    for (long i = 0; i < scaled(3000); i++) {
+    for (long i = 0; i < scaled(1500); i++) {
         scene s;
         if (!make_scene(&s, (int)(i % SCENE_KINDS), &state)) continue;
         int32_t vertex;
@@ -267,7 +265,7 @@ static double position_bound(const double position[3]) {
 static void positions_are_close_to_the_crossing(void **unused) {
     (void)unused;
     uint64_t state = seed + 3, inside = 0;
-    for (long i = 0; i < scaled(4000); i++) {
+    for (long i = 0; i < scaled(2000); i++) {
         scene s;
         if (!make_scene(&s, (int)(i % SCENE_KINDS), &state)) continue;
         int32_t vertex;
@@ -281,13 +279,13 @@ static void positions_are_close_to_the_crossing(void **unused) {
         }
         free(s.geometry.crossings);
     }
-    assert_true(inside > (uint64_t)scaled(4000));
+    assert_true(inside > (uint64_t)scaled(2000));
 }
 
 static void dominant_axis_and_facing_are_right(void **unused) {
     (void)unused;
     uint64_t state = seed + 4, parallel = 0;
-    for (long i = 0; i < scaled(10000); i++) {
+    for (long i = 0; i < scaled(4000); i++) {
         scene s;
         if (!make_scene(&s, (int)(i % SCENE_KINDS), &state)) continue;
         for (int32_t p = 0; p < PLANES; p++) {
@@ -312,8 +310,7 @@ static void dominant_axis_and_facing_are_right(void **unused) {
     assert_true(parallel > 0);
 }
 
-// ---- Loops
-// --------------------------------------------------------------------------------------------------------------
+// ---- Loops ----
 
 /// The corners of a loop for the oracle. The caller frees them.
 static oracle_corner *describe_loop(const scene *s, const enf_pool *pool, enf_loop loop) {
@@ -403,7 +400,7 @@ static void assert_areas_add_up(const scene *s, const enf_pool *pool, enf_loop w
 static void cutting_a_loop_loses_no_area(void **unused) {
     (void)unused;
     uint64_t state = seed + 5, cuts = 0;
-    for (long i = 0; i < scaled(3000); i++) {
+    for (long i = 0; i < scaled(1500); i++) {
         scene s;
         enf_pool pool = {.share_cut = i % 2};
         enf_loop loop;
@@ -428,7 +425,7 @@ static void cutting_a_loop_loses_no_area(void **unused) {
         }
         enf_pool_free(&pool);
     }
-    assert_true(cuts > (uint64_t)scaled(3000));
+    assert_true(cuts > (uint64_t)scaled(1500));
 }
 
 static void keeping_both_sides_keeps_all_area(void **unused) {

@@ -359,6 +359,65 @@ static void spawn_points_may_be_given_and_groups_left_out(void **state) {
     process_free(&ran);
 }
 
+static void vertices_that_no_polygon_can_use_do_no_harm(void **state) {
+    (void)state;
+    char *world = run(NULL, "gen four-rooms -o -");
+    char *text = malloc(strlen(world) + 256);
+    assert_non_null(text);
+    sprintf(text,
+            "%svn nan 1e308 -inf\nvt inf nan\nv 1e308 0 0\nv nan 0 0\nv 0 -inf 1e999\nf 1 2 -1\nf -1 -2 "
+            "-3\nf 1 2 -3\n",
+            world);
+    write_text("wild.obj", text);
+    do_run("compile wild.obj -o wild.enf --report wild.json");
+    char *report = read_text("wild.json"), *info = run(NULL, "info wild.enf --json");
+    assert_true(number_of(info, "rejected") == 3);
+    assert_true(number_of(info, "spawns_in_cells") == 4);
+    free(run(NULL, "check wild.enf"));
+    do_run("export wild.enf -o wild-cells.obj");
+    free(info);
+    free(report);
+    free(text);
+    free(world);
+}
+
+/// The figures of the thesis (4.3): sizes about as there, and a stop at which every room is a cell of its own
+/// and no more cells are left than rooms (24 for the distorted rooms, which keep spikes).
+static void the_worlds_of_the_thesis_fall_into_their_rooms(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        int tetrahedra_min, tetrahedra_max, rooms, cells_max;
+        double split_min, split_max; ///< percent
+    } rows[] = {
+        {"four-rooms ", 140, 180, 4, 4, 8, 14},
+        {"four-rooms-tessellated ", 480, 560, 4, 4, 0, 2},
+        {"four-rooms-distorted ", 270, 330, 4, 24, 33, 41},
+        {"cavern ", 1050, 1210, 6, 6, 0, 2},
+    };
+    char *table = run(NULL, "bench thesis");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char line[64];
+        snprintf(line, sizeof line, "\n%s", rows[i].name);
+        const char *at = strstr(table, line);
+        assert_non_null(at);
+        int tetrahedra, cut, fine, gone, active, rooms, cells[2];
+        double split;
+        char mark[2];
+        assert_int_equal(sscanf(at + strlen(line), "%d %d %lf %% %d %d %d %d %d%c %*f %*f %d%c", &tetrahedra,
+                                &cut, &split, &fine, &gone, &active, &rooms, &cells[0], &mark[0], &cells[1],
+                                &mark[1]),
+                         11);
+        assert_in_range(tetrahedra, rows[i].tetrahedra_min, rows[i].tetrahedra_max);
+        assert_true(split >= rows[i].split_min && split <= rows[i].split_max);
+        assert_int_equal(rooms, rows[i].rooms);
+        assert_int_equal(gone + active, fine);
+        assert_true(cells[0] <= rows[i].cells_max || cells[1] <= rows[i].cells_max);
+        assert_true(cells[0] >= rooms && cells[1] >= rooms);
+    }
+    free(table);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_world_goes_all_the_way),
@@ -368,6 +427,8 @@ int main(void) {
         cmocka_unit_test(an_input_may_come_in_pieces_or_from_a_pipe),
         cmocka_unit_test(a_leak_is_a_warning_with_a_path),
         cmocka_unit_test(quiet_says_nothing_and_verbose_says_what_was_done),
+        cmocka_unit_test(vertices_that_no_polygon_can_use_do_no_harm),
+        cmocka_unit_test(the_worlds_of_the_thesis_fall_into_their_rooms),
         cmocka_unit_test(spawn_points_may_be_given_and_groups_left_out),
     };
     return cmocka_run_group_tests(tests, enter, leave);

@@ -7,6 +7,7 @@
 #include "base/timer.h"
 #include "build/arrangement.h"
 #include "build/connect.h"
+#include "build/hairline.h"
 #include "build/split.h"
 #include "shim/shim.h"
 
@@ -104,11 +105,16 @@ static enf_status connect(kitchen *k) {
     return ENF_OK;
 }
 
+/// What is thinner than the tolerances of clean is no opening and no place, grid steps.
+static double crack_width(const enf_build *build) {
+    return fmax(build->mesh.weld, build->mesh.plane_tolerance) / build->mesh.frame.step;
+}
+
 static enf_status colour(kitchen *k) {
     enf_build *build = k->build;
-    double crack = fmax(build->mesh.weld, build->mesh.plane_tolerance) / build->mesh.frame.step;
-    enf_status status = enf_regions_colour(&build->regions, &build->complex, &build->mesh,
-                                           &k->arrangement.tets, k->options->keep, crack, k->error);
+    enf_status status =
+        enf_regions_colour(&build->regions, &build->complex, &build->mesh, &k->arrangement.tets,
+                           k->options->keep, crack_width(build), k->error);
     enf_arrangement_free(&k->arrangement);
     free(k->crossings);
     k->crossings = NULL;
@@ -123,13 +129,18 @@ static enf_status colour(kitchen *k) {
 static enf_status decimate(kitchen *k) {
     enf_build *build = k->build;
     const enf_complex *complex = &build->complex;
-    k->node_of = enf_array_new((size_t)complex->cell_count, sizeof *k->node_of);
-    build->cell_of = enf_array_new((size_t)complex->cell_count, sizeof *build->cell_of);
-    if (!k->node_of || !build->cell_of) return enf_fail_memory(k->error, "the cells");
-    int32_t nodes = 0;
-    for (int32_t c = 0; c < complex->cell_count; c++) {
-        k->node_of[c] = build->regions.kept[build->regions.cell_region[c]] ? nodes++ : -1;
-    }
+    size_t cells = (size_t)complex->cell_count;
+    bool *cell_kept = enf_array_new(cells, sizeof *cell_kept);
+    k->node_of = enf_array_new(cells, sizeof *k->node_of);
+    build->cell_of = enf_array_new(cells, sizeof *build->cell_of);
+    int32_t nodes = 0, joined = 0;
+    bool good = cell_kept && k->node_of && build->cell_of;
+    for (size_t c = 0; good && c < cells; c++)
+        cell_kept[c] = build->regions.kept[build->regions.cell_region[c]];
+    good =
+        good && enf_complex_number_nodes(complex, cell_kept, crack_width(build), k->node_of, &nodes, &joined);
+    free(cell_kept);
+    if (!good) return enf_fail_memory(k->error, "the cells");
     enf_graph graph;
     enf_status status = enf_graph_build(&graph, complex, k->node_of, nodes, k->error);
     if (status != ENF_OK) return status;
@@ -144,8 +155,10 @@ static enf_status decimate(kitchen *k) {
     for (int32_t c = 0; c < complex->cell_count; c++) {
         build->cell_of[c] = k->node_of[c] < 0 ? -1 : build->decimation.cell_of[k->node_of[c]];
     }
-    say(k, "%d cells of %d; %zu weights computed for %zu collapses", (int)build->cell_count, (int)nodes,
-        build->decimation.evaluations, build->decimation.collapse_count);
+    say(k,
+        "%d cells of %d (%d hairline cells joined to others first); %zu weights computed for %zu collapses",
+        (int)build->cell_count, (int)nodes, (int)joined, build->decimation.evaluations,
+        build->decimation.collapse_count);
     return ENF_OK;
 }
 

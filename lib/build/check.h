@@ -6,7 +6,7 @@
 
 #include "enfilade/format.h"
 
-enum { ENF_CHECK_ROWS_MAX = 32 };
+enum { ENF_CHECK_ROWS_MAX = 40 };
 
 /// One invariant.
 typedef struct enf_check_row {

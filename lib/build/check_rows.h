@@ -80,8 +80,10 @@ void enf_check_tetrahedra(enf_checker *checker);
 void enf_check_split(enf_checker *checker);
 void enf_check_covers(enf_checker *checker);
 void enf_check_connect(enf_checker *checker);
+void enf_check_seen(enf_checker *checker); ///< a row of connect
 void enf_check_colour(enf_checker *checker);
 void enf_check_decimate(enf_checker *checker);
+void enf_check_drawn(enf_checker *checker); ///< a row of decimate
 void enf_check_portals(enf_checker *checker);
 void enf_check_file(enf_checker *checker);
 

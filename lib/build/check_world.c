@@ -356,9 +356,34 @@ static void check_boxes(enf_checker *checker) {
     }
 }
 
+/// The cells of a region are all of it, if it is kept; rounded volumes are right to nine digits, or, for
+/// regions that are next to nothing, to twelve digits of the hull's.
+static void check_cell_volumes(enf_checker *checker) {
+    const enf_file_view *view = checker->view;
+    enf_check_begin(checker, "decimate: volumes",
+                    "the reported volumes of a region's cells add up to the region's");
+    double *sum = enf_array_zeroed((size_t)view->region_count, sizeof *sum);
+    if (!sum) {
+        enf_check_no_memory(checker);
+        return;
+    }
+    double step = view->frame->step, hull = hull_volume(view) / 6 * step * step * step;
+    for (int32_t i = 0; i < view->cell_count; i++) sum[view->cells[i].region] += view->cells[i].volume;
+    for (int32_t r = 0; r < view->region_count && enf_check_holds(checker); r++) {
+        const enf_file_region *region = &view->regions[r];
+        if (!region->kept) continue;
+        checker->row->tested++;
+        if (!(fabs(sum[r] - region->volume) <= 1e-9 * fabs(region->volume) + 1e-12 * hull))
+            enf_check_break(checker, "the cells of region %d have a volume of %.17g, the region %.17g",
+                            (int)r, sum[r], region->volume);
+    }
+    free(sum);
+}
+
 void enf_check_decimate(enf_checker *checker) {
     check_cells(checker);
     if (!enf_check_holds(checker)) return;
     check_connected(checker);
     check_boxes(checker);
+    check_cell_volumes(checker);
 }

@@ -48,6 +48,31 @@ double enf_complex_cell_volume(const enf_complex *complex, int32_t cell) {
     return volume / 3;
 }
 
+bool enf_body_is_hairline(const enf_body_size *body, double thin) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) square += (body->high[k] - body->low[k]) * (body->high[k] - body->low[k]);
+    return thin > 0 && (2 * body->volume <= thin * body->surface || body->surface <= thin * sqrt(square));
+}
+
+void enf_complex_measure_cell(const enf_complex *complex, int32_t cell, enf_body_size *body) {
+    const enf_loops *faces = &complex->faces;
+    body->volume += enf_complex_cell_volume(complex, cell);
+    for (int32_t f = complex->cell_face[cell]; f < complex->cell_face[cell + 1]; f++) {
+        int64_t begin = faces->offset[f], end = faces->offset[f + 1];
+        double area[3];
+        enf_loop_area(faces->corners + begin, end - begin, (const double(*)[3])complex->vertex_position,
+                      area);
+        body->surface += sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        for (int64_t c = begin; c < end; c++) {
+            const double *at = complex->vertex_position[faces->corners[c].vertex];
+            for (int k = 0; k < 3; k++) {
+                body->low[k] = fmin(body->low[k], at[k]);
+                body->high[k] = fmax(body->high[k], at[k]);
+            }
+        }
+    }
+}
+
 void enf_complex_piece_area(const enf_complex *complex, int32_t piece, double area[3]) {
     const enf_loops *pieces = &complex->pieces;
     enf_loop_area(pieces->corners + pieces->offset[piece], pieces->offset[piece + 1] - pieces->offset[piece],

@@ -109,6 +109,19 @@ int32_t *enf_complex_face_cells(const enf_complex *complex);
 /// Volume in grid steps cubed, from rounded coordinates.
 double enf_complex_cell_volume(const enf_complex *complex, int32_t cell);
 
+/// What tells a hairline from a body: a crack, or a needle, left by rounded coordinates.
+typedef struct enf_body_size {
+    double volume, surface, low[3], high[3];
+} enf_body_size;
+
+/// Thinner than `thin`: twice the volume is less than `thin` times the surface, or (a needle; rounding leaves
+/// nothing of its volume) the surface is less than `thin` times the length of the bounding box.
+bool enf_body_is_hairline(const enf_body_size *body, double thin);
+
+/// Adds a fine cell, with all its faces as surface, to a body that was {.low = +inf, .high = -inf} or had
+/// others before.
+void enf_complex_measure_cell(const enf_complex *complex, int32_t cell, enf_body_size *body);
+
 /// Area vector of a piece, grid steps squared, pointing to the facet's front.
 void enf_complex_piece_area(const enf_complex *complex, int32_t piece, double area[3]);
 

@@ -209,7 +209,11 @@ static void draw_storey(drawing *draw, int number) {
             draw->origin[0], draw->origin[1], draw->panel[0], draw->panel[1]);
     fputs("<g class=\"cells\">\n", out);
     for (int32_t i = 0; i < storey->area_count;) i = draw_cell(draw, storey, i);
-    fputs("</g>\n<g class=\"floors\">\n", out);
+    fprintf(out,
+            "</g>\n<clipPath id=\"panel%d\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" "
+            "height=\"%.1f\"/></clipPath>\n"
+            "<g class=\"floors\" clip-path=\"url(#panel%d)\">\n",
+            number, draw->origin[0], draw->origin[1], draw->panel[0], draw->panel[1], number);
     draw_lines(draw, storey, ENF_PLAN_FLOOR);
     fputs("</g>\n<g class=\"walls\">\n", out);
     draw_lines(draw, storey, ENF_PLAN_WALL);
@@ -240,7 +244,7 @@ static void draw_head(const drawing *draw, const char *title, double width, doub
             ".cells path { stroke-width: 0.7; stroke-linejoin: round }\n"
             ".floors path { stroke: #23262b; stroke-opacity: 0.28; stroke-width: 0.9; fill: none }\n"
             ".walls path { stroke: %s; stroke-width: 2; stroke-linecap: round; fill: none }\n"
-            ".portals path { stroke: %s; stroke-width: 4; stroke-linecap: round; fill: none }\n"
+            ".portals path { stroke: %s; stroke-width: %.1f; stroke-linecap: round; fill: none }\n"
             ".flat path { stroke: %s; stroke-width: 1.4; stroke-linejoin: round }\n"
             ".numbers text { fill: #23262b; fill-opacity: 0.55; font-weight: bold; text-anchor: middle; "
             "dominant-baseline: central }\n"
@@ -248,11 +252,12 @@ static void draw_head(const drawing *draw, const char *title, double width, doub
             ".spawns text { font-size: 12px; fill: #1d4ed8; stroke: #fff; stroke-width: 2.5; paint-order: "
             "stroke }\n"
             "</style>\n",
-            wall_colour, portal_colour, portal_colour);
+            wall_colour, portal_colour, fmin(fmax(0.005 * fmin(draw->panel[0], draw->panel[1]), 1.6), 4),
+            portal_colour);
     fprintf(out,
             "<defs><pattern id=\"hatch\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\" "
             "patternTransform=\"rotate(45)\"><path d=\"M0 0V7\" stroke=\"%s\" "
-            "stroke-width=\"1.6\"/></pattern></defs>\n",
+            "stroke-width=\"1.4\" stroke-opacity=\"0.6\"/></pattern></defs>\n",
             portal_colour);
     fprintf(out,
             "<rect width=\"100%%\" height=\"100%%\" fill=\"#fbfaf8\"/>\n<text class=\"title\" x=\"%.0f\" "

@@ -38,7 +38,7 @@ enf_status enf_graph_build(enf_graph *graph, const enf_complex *complex, const i
                 int32_t face = complex->piece_face[p][side];
                 node[side] = face < 0 ? -1 : node_of[face_cell[face]];
             }
-            if (node[0] < 0 && node[1] < 0) continue;
+            if (node[0] == node[1]) continue; // nothing of it is kept, or it lies inside a node
             if (pass == 1) {
                 memcpy(graph->piece_cell[count], node, sizeof node);
                 graph->piece_open[count] =

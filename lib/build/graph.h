@@ -21,7 +21,8 @@ typedef struct enf_graph {
 
 void enf_graph_free(enf_graph *graph);
 
-/// The graph over the fine cells with node_of[cell] >= 0 (their number in the graph, 0..node_count-1).
+/// The graph over the fine cells with node_of[cell] >= 0: the number of the node they belong to,
+/// 0..node_count-1. A node is a convex fine cell, with the hairline cells that go with it (build/hairline.h).
 enf_status enf_graph_build(enf_graph *graph, const enf_complex *complex, const int32_t *node_of,
                            int32_t node_count, enf_error *error);
 

@@ -32,7 +32,8 @@ static int32_t side_cell(const enf_complex *complex, const int32_t *face_cell, i
 
 /// Opens the widest pieces first until the start is joined to the outside. Marks the pieces opened. False
 /// without memory.
-static bool open_widest(const enf_complex *complex, const int32_t *face_cell, int32_t start, bool *opened) {
+static bool open_widest(const enf_complex *complex, const int32_t *face_cell, int32_t start, bool *opened,
+                        double *width) {
     opening *openings = enf_array_new((size_t)complex->pieces.count, sizeof *openings);
     int32_t *parent = enf_array_new((size_t)complex->cell_count + 1, sizeof *parent);
     if (openings && parent) {
@@ -46,6 +47,7 @@ static bool open_widest(const enf_complex *complex, const int32_t *face_cell, in
         for (size_t i = 0; i < count && find(parent, start) != find(parent, complex->cell_count); i++) {
             int32_t p = openings[i].piece;
             opened[p] = true;
+            *width = openings[i].width;
             parent[find(parent, side_cell(complex, face_cell, p, 0))] =
                 find(parent, side_cell(complex, face_cell, p, 1));
         }
@@ -148,7 +150,8 @@ bool enf_regions_trace_leak(enf_regions *regions, const enf_complex *complex, co
     if (!regions->leak) return true;
     int32_t start = regions->spawn_cell[regions->leak_spawn], last = -1;
     search search = {.opened = enf_array_zeroed((size_t)complex->pieces.count, sizeof *search.opened)};
-    bool good = search.opened && open_widest(complex, face_cell, start, search.opened) &&
+    bool good = search.opened &&
+                open_widest(complex, face_cell, start, search.opened, &regions->leak_width) &&
                 list_open_pieces(&search, complex, face_cell);
     if (good) {
         int32_t exit = search_outside(&search, complex, face_cell, start, &last);

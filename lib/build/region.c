@@ -31,6 +31,7 @@ void enf_regions_free(enf_regions *regions) {
     free(regions->winding);
     free(regions->ambiguous);
     free(regions->volume);
+    free(regions->hairline);
     free(regions->front_area);
     free(regions->back_area);
     free(regions->spawn_cell);
@@ -143,42 +144,68 @@ static bool allocate(enf_regions *regions) {
     regions->winding = enf_array_zeroed(count, sizeof *regions->winding);
     regions->ambiguous = enf_array_zeroed(count, sizeof *regions->ambiguous);
     regions->volume = enf_array_zeroed(count, sizeof *regions->volume);
+    regions->hairline = enf_array_zeroed(count, sizeof *regions->hairline);
     regions->front_area = enf_array_zeroed(count, sizeof *regions->front_area);
     regions->back_area = enf_array_zeroed(count, sizeof *regions->back_area);
     return regions->kind && regions->kept && regions->touches_outside && regions->winding &&
-           regions->ambiguous && regions->volume && regions->front_area && regions->back_area;
+           regions->ambiguous && regions->volume && regions->hairline && regions->front_area &&
+           regions->back_area;
 }
 
-/// Volumes, areas of fronts and backs, and whether the hull is open somewhere.
-static void measure(enf_regions *regions, const enf_complex *complex, const int32_t *face_cell) {
-    for (int32_t c = 0; c < complex->cell_count; c++) {
-        regions->volume[regions->cell_region[c]] += enf_complex_cell_volume(complex, c);
-    }
+/// Areas of fronts and backs, and whether the hull is open somewhere. `bodies` get all closed area as
+/// surface.
+static void measure_pieces(enf_regions *regions, const enf_complex *complex, const int32_t *face_cell,
+                           enf_body_size *bodies) {
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         const int32_t *face = complex->piece_face[p];
         int32_t cover = complex->piece_cover[p];
-        double area[3];
-        if (cover >= 0) enf_complex_piece_area(complex, p, area);
+        double area[3] = {0}, size = 0;
+        if (cover != ENF_PIECE_OPEN) {
+            enf_complex_piece_area(complex, p, area);
+            size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+        }
         for (int side = 0; side < 2; side++) {
             if (face[side] < 0) continue;
             int32_t region = regions->cell_region[face_cell[face[side]]];
-            if (cover == ENF_PIECE_SEALED) continue;
+            bodies[region].surface += size;
             if (cover == ENF_PIECE_OPEN) {
                 if (face[1 - side] < 0) regions->touches_outside[region] = true;
-            } else {
-                double size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
-                *(complex->cover_side[cover] == side ? &regions->front_area[region]
-                                                     : &regions->back_area[region]) += size;
+            } else if (cover >= 0) {
+                bool front = complex->cover_side[cover] == side;
+                *(front ? &regions->front_area[region] : &regions->back_area[region]) += size;
             }
         }
     }
 }
 
-static void judge(enf_regions *regions, double crack) {
+static bool measure(enf_regions *regions, const enf_complex *complex, const int32_t *face_cell,
+                    double crack) {
+    enf_body_size *bodies = enf_array_new((size_t)regions->region_count, sizeof *bodies);
+    if (!bodies) return false;
+    for (int32_t r = 0; r < regions->region_count; r++) {
+        bodies[r] =
+            (enf_body_size){.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+    }
+    for (int32_t c = 0; c < complex->cell_count; c++) {
+        enf_complex_measure_cell(complex, c, &bodies[regions->cell_region[c]]);
+    }
+    for (int32_t r = 0; r < regions->region_count; r++) {
+        regions->volume[r] = bodies[r].volume;
+        bodies[r].surface = 0; // only the closed part of the faces counts
+    }
+    measure_pieces(regions, complex, face_cell, bodies);
+    for (int32_t r = 0; r < regions->region_count; r++) {
+        regions->hairline[r] = !regions->touches_outside[r] && enf_body_is_hairline(&bodies[r], crack);
+    }
+    free(bodies);
+    return true;
+}
+
+static void judge(enf_regions *regions) {
     for (int32_t r = 0; r < regions->region_count; r++) {
         double front = regions->front_area[r], back = regions->back_area[r];
         bool sees = front > 0 && front >= back;
-        if (crack > 0 && 2 * regions->volume[r] < crack * (front + back) && !regions->touches_outside[r]) {
+        if (regions->hairline[r]) {
             regions->kind[r] = ENF_KIND_ROCK;
             regions->ambiguous[r] = false;
         } else if (regions->touches_outside[r]) {
@@ -287,12 +314,12 @@ enf_status enf_regions_colour(enf_regions *regions, enf_complex *complex, const 
     int32_t *face_cell = enf_complex_face_cells(complex);
     bool good = face_cell && colour_cells(regions, complex, face_cell, crack) && allocate(regions);
     if (good) {
-        measure(regions, complex, face_cell);
-        good = enf_complex_wind(complex, mesh, face_cell, regions->cell_region, regions->region_count,
+        good = measure(regions, complex, face_cell, crack) &&
+               enf_complex_wind(complex, mesh, face_cell, regions->cell_region, regions->region_count,
                                 regions->winding, regions->ambiguous);
     }
     if (good) {
-        judge(regions, crack);
+        judge(regions);
         good = place_spawns(regions, complex, mesh, tets) &&
                enf_regions_trace_leak(regions, complex, mesh, face_cell);
     }

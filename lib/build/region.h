@@ -19,6 +19,7 @@ typedef struct enf_regions {
     int32_t *winding;               ///< how many closed solids hold the region (see region.c); 0 outside
     bool *ambiguous;                ///< the polygons around it contradict each other about the winding
     double *volume;                 ///< grid steps cubed
+    bool *hairline;                 ///< thinner than the weld distance: a crack, no place
     double *front_area, *back_area; ///< occluder fronts and backs that face into it, grid steps squared
 
     int32_t spawn_count;
@@ -29,6 +30,7 @@ typedef struct enf_regions {
 
     bool leak; ///< a spawn's region reaches the outside
     int32_t leak_spawn;
+    double leak_width;        ///< of the narrowest opening on the way, grid steps
     int32_t leak_point_count; ///< polyline from the spawn to the outside, grid steps
     double (*leak_points)[3];
 } enf_regions;

@@ -33,8 +33,9 @@ static bool out_of_memory(drawer *d) {
     return false;
 }
 
+/// What a file can hold: no polygon uses the others.
 static double finite_or_zero(double value) {
-    return isfinite(value) ? value : 0;
+    return fabs(value) <= 0x1p1000 ? value : 0;
 }
 
 // --- Triangles

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Real levels: every shared Quake level compiles, keeps its spawns, leaks only where it has a hole, and has
+// the same regions whichever tetrahedralizer is used.
+#include "pipeline_fixture.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/// Levels whose polygons leave a hole between inside and outside. A path through it meets no brush: see the
+/// message of the test for its narrowest place.
+static const struct {
+    const char *name;
+    double width; ///< of the hole, world units, at most
+} holes[] = {{"e1m5.obj.gz", 1.8}, {"e2m2.obj.gz", 0.04}};
+
+static double hole_width(const char *name) {
+    for (size_t i = 0; i < sizeof holes / sizeof *holes; i++) {
+        if (strcmp(name, holes[i].name) == 0) return holes[i].width;
+    }
+    return 0;
+}
+
+static void check_leak(const enf_build *build, const char *name) {
+    double step = build->mesh.frame.step, expected = hole_width(name);
+    if (!build->regions.leak) {
+        if (expected > 0) fail_msg("%s: its hole was not found", name);
+        return;
+    }
+    print_message("%s: leak from spawn %d, narrowest %.4g units wide\n", name, (int)build->regions.leak_spawn,
+                  build->regions.leak_width * step);
+    if (expected == 0) fail_msg("%s: leaks", name);
+    assert_true(build->regions.leak_width * step <= expected);
+    assert_true(build->regions.leak_point_count >= 2);
+}
+
+static void check_spawns(const enf_build *build, const char *name) {
+    for (int32_t s = 0; s < build->regions.spawn_count; s++) {
+        int32_t cell = build->regions.spawn_cell[s];
+        if (cell < 0 || build->cell_of[cell] < 0) fail_msg("%s: spawn %d is in no kept cell", name, (int)s);
+    }
+}
+
+static void check_same_regions(const enf_build *cgal, const enf_build *tetgen, const char *name) {
+    size_t count, other;
+    double *ours = pipeline_region_volumes(cgal, &count), *theirs = pipeline_region_volumes(tetgen, &other);
+    if (count != other) fail_msg("%s: %zu regions with CGAL, %zu with TetGen", name, count, other);
+    for (size_t i = 0; i < count; i++) {
+        if (fabs(ours[i] - theirs[i]) > 1e-9 * ours[i]) {
+            fail_msg("%s: region volumes %.17g and %.17g", name, ours[i], theirs[i]);
+        }
+    }
+    free(ours);
+    free(theirs);
+}
+
+static void check_level(const char *path, const char *name) {
+    enf_build builds[2];
+    for (int i = 0; i < 2; i++) {
+        enf_error error = {0};
+        memset(&builds[i], 0, sizeof builds[i]);
+        if (enf_soup_read(&builds[i].soup, path, &error) != ENF_OK) fail_msg("%s", error.text);
+        enf_build_options options = pipeline_options();
+        options.tetrahedralizer = i == 0 ? ENF_TETRAHEDRALIZER_CGAL : ENF_TETRAHEDRALIZER_TETGEN;
+        if (enf_build_run(&builds[i], &options, &error) != ENF_OK) fail_msg("%s: %s", name, error.text);
+    }
+    check_leak(&builds[0], name);
+    check_spawns(&builds[0], name);
+    check_same_regions(&builds[0], &builds[1], name);
+    print_message("%s: %d tetrahedra, %d fine cells, %d regions, %d cells, %d openings\n", name,
+                  (int)builds[0].complex.tetrahedron_count, (int)builds[0].complex.cell_count,
+                  (int)builds[0].regions.region_count, (int)builds[0].cell_count,
+                  (int)builds[0].portals.opening_count);
+    for (int i = 0; i < 2; i++) enf_build_free(&builds[i]);
+}
+
+static void levels_compile_and_both_tetrahedralizers_agree(void **state) {
+    (void)state;
+    const char *shared = pipeline_shared("quake/obj");
+    if (!shared) skip();
+    char folder[1024], path[2048];
+    snprintf(folder, sizeof folder, "%s", shared);
+    struct dirent **entries;
+    int count = scandir(folder, &entries, NULL, alphasort);
+    assert_true(count >= 0);
+    for (int i = 0; i < count; i++) {
+        if (strstr(entries[i]->d_name, ".obj.gz")) {
+            snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
+            check_level(path, entries[i]->d_name);
+        }
+        free(entries[i]);
+    }
+    free(entries);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(levels_compile_and_both_tetrahedralizers_agree)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
