@@ -12,6 +12,8 @@
 
 const char *const cli_tetrahedralizers[] = {"cgal", "tetgen", NULL};
 const char *const cli_heuristics[] = {"aspect", "aspect-scaled", NULL};
+_Static_assert(sizeof cli_heuristics / sizeof *cli_heuristics == ENF_HEURISTIC_COUNT + 1,
+               "one name per heuristic");
 const char *const cli_keeps[] = {"auto", "all", "outside", "spawn", NULL};
 const char *const cli_pvs_methods[] = {"none", "reach", "facing", "hourglass", "lp", "exact", NULL};
 

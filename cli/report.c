@@ -66,7 +66,7 @@ static void put_clean(enf_json *json, const enf_mesh *mesh) {
 
 static void put_regions(enf_json *json, const enf_build *build, const cli_counts *counts) {
     const enf_regions *regions = &build->regions;
-    double step = build->mesh.frame.step, cube = step * step * step;
+    double step = build->mesh.frame.step;
     int64_t ambiguous = 0;
     enf_json_whole(json, "regions", regions->region_count);
     enf_json_whole(json, "regions_kept", counts->regions_kept);
@@ -77,7 +77,7 @@ static void put_regions(enf_json *json, const enf_build *build, const cli_counts
         json->one_line = true;
         enf_json_text(json, "kind", kind_names[regions->kind[i] % 3]);
         enf_json_bool(json, "kept", regions->kept[i]);
-        enf_json_number(json, "volume", regions->volume[i] * cube);
+        enf_json_number(json, "volume", regions->volume[i] * step * step * step);
         enf_json_whole(json, "winding", regions->winding[i]);
         enf_json_bool(json, "ambiguous", regions->ambiguous[i]);
         enf_json_end_object(json);

@@ -242,6 +242,14 @@ static bool change_volume(world *w, int index) {
     return index == 0;
 }
 
+static bool change_area(world *w, int index) {
+    enf_file_region *regions = WRITABLE(w->view.regions);
+    double swap = regions[0].front_area;
+    regions[0].front_area = regions[0].back_area;
+    regions[0].back_area = swap;
+    return index == 0;
+}
+
 static bool count_fewer_discarded(world *w, int index) {
     enf_file_provenance *made = WRITABLE(w->view.provenance);
     made->fine_cells_discarded--;
@@ -401,6 +409,7 @@ const check_kind check_kinds[] = {
     {"colour: kinds", keep_other_region},
     {"colour: volumes", change_volume},
     {"colour: volumes", count_fewer_discarded},
+    {"colour: areas", change_area},
     {"colour: spawns", move_spawn},
     {"colour: spawns", report_leak},
     {"decimate: cells", discard_fine_cell},

@@ -34,9 +34,10 @@ bool oracle_spans(const oracle_plane *plane);
 /// Do three planes cross in one point?
 bool oracle_crosses(const oracle_plane planes[3]);
 
-/// On which side of the plane is the corner: by integer determinants, and by CGAL's kernel objects over
-/// rationals.
-int oracle_side(const oracle_corner *corner, const oracle_plane *plane);
+/// On which side of each of `count` planes is the corner: by integer determinants.
+void oracle_sides(const oracle_corner *corner, const oracle_plane *planes, int count, int *sides);
+
+/// The same for one plane, by CGAL's kernel objects over rationals.
 int oracle_side_by_kernel(const oracle_corner *corner, const oracle_plane *plane);
 
 /// The axis along which the plane's normal is longest (the first of equals), with the sign of the normal

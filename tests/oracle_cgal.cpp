@@ -120,10 +120,12 @@ bool oracle_crosses(const oracle_plane planes[3]) {
                        cross(plane_of(&planes[1]).normal, plane_of(&planes[2]).normal))) != 0;
 }
 
-int oracle_side(const oracle_corner *corner, const oracle_plane *plane) {
+void oracle_sides(const oracle_corner *corner, const oracle_plane *planes, int count, int *sides) {
     homogeneous at = corner_of(corner);
-    coefficients of = plane_of(plane);
-    return sign_of(dot(of.normal, at.at) + of.offset * at.weight) * sign_of(at.weight);
+    for (int i = 0; i < count; i++) {
+        coefficients of = plane_of(&planes[i]);
+        sides[i] = sign_of(dot(of.normal, at.at) + of.offset * at.weight) * sign_of(at.weight);
+    }
 }
 
 int oracle_side_by_kernel(const oracle_corner *corner, const oracle_plane *plane) {

@@ -3,6 +3,8 @@
 
 #include "base/array.h"
 #include "base/hash.h"
+#include "build/check.h"
+#include "build/write.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -113,6 +115,16 @@ void pipeline_move(enf_soup *soup, const int axis[3], const int sign[3], double 
 void pipeline_build(enf_build *build, const enf_build_options *options) {
     enf_error error = {0};
     if (enf_build_run(build, options, &error) != ENF_OK) fail_msg("%s", error.text);
+}
+
+void pipeline_check(const enf_build *build) {
+    enf_image image;
+    enf_check_report report;
+    enf_error error = {0};
+    if (enf_image_make(&image, build, NULL, &error) != ENF_OK) fail_msg("%s", error.text);
+    enf_status status = enf_world_check(&image.view, &report, &error);
+    enf_image_free(&image);
+    if (status != ENF_OK) fail_msg("%s", error.text);
 }
 
 #define HASH(array, count) hash = enf_hash64((array), (size_t)(count) * sizeof *(array), hash)

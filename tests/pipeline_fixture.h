@@ -27,6 +27,9 @@ void pipeline_move(enf_soup *soup, const int axis[3], const int sign[3], double 
 /// Builds, or fails the test with the builder's words.
 void pipeline_build(enf_build *build, const enf_build_options *options);
 
+/// Runs every check on the build as it would be in the file, or fails the test with what is broken.
+void pipeline_check(const enf_build *build);
+
 /// A hash of the whole result but for what names the input: complex, regions, cells, portals.
 uint64_t pipeline_fingerprint(const enf_build *build);
 

@@ -52,6 +52,7 @@ static const bad_input bad_inputs[] = {
     {"huge.obj", "v 1e308 0 0\nv 0 1e308 0\nv 0 0 1e308\nv -1e308 0 0\nf 1 2 3\nf 1 2 4\n", 0, 3,
      "huge.obj:5: "},
     {"beyond.obj", "v 1e999 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", 0, 3, "beyond.obj:4: "},
+    {"beyond-volume.obj", "v 1e101 0 0\nv 0 1e101 0\nv 0 0 1e101\nf 1 2 3\n", 0, 3, "beyond-volume.obj:4: "},
     {"nan.obj", "v nan 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", 0, 3, "nan.obj:4: "},
     {"inf.obj", "v 0 -inf 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n", 0, 3, "inf.obj:4: "},
     {"words.obj", "v a b c\nv 1 2 3\nf 1 2 1\n", 0, 3, "words.obj:3: "},

@@ -129,6 +129,10 @@ static oracle_corner describe_vertex(const scene *s, const enf_geometry *geometr
     return corner;
 }
 
+static void describe_planes(const scene *s, oracle_plane planes[PLANES]) {
+    for (int32_t p = 0; p < PLANES; p++) planes[p] = describe(s, s->planes[p]);
+}
+
 static bool random_planes(scene *s, uint64_t *state) {
     for (int i = 0; i < PLANES; i++) {
         oracle_plane plane;
@@ -197,6 +201,7 @@ static void orientation_of_four_points_is_right(void **unused) {
 static void side_of_a_plane_is_right(void **unused) {
     (void)unused;
     uint64_t state = seed + 1, zeros = 0, cases = 0, filter = 0, exact = 0;
+    oracle_plane planes[PLANES];
     for (long i = 0; i < scaled(1500); i++) {
         scene s;
         if (!make_scene(&s, (int)(i % SCENE_KINDS), &state)) continue;
@@ -206,12 +211,14 @@ static void side_of_a_plane_is_right(void **unused) {
         }
         for (vertex = 0; vertex < POINTS + s.geometry.crossing_count; vertex++) {
             oracle_corner corner = describe_vertex(&s, &s.geometry, vertex);
+            int expected[PLANES];
+            describe_planes(&s, planes);
+            oracle_sides(&corner, planes, PLANES, expected);
             for (int32_t p = 0; p < PLANES; p++) {
-                oracle_plane plane = describe(&s, s.planes[p]);
-                int expected = oracle_side(&corner, &plane);
-                if (cases++ % 64 == 0) assert_int_equal(expected, oracle_side_by_kernel(&corner, &plane));
-                zeros += expected == 0;
-                assert_int_equal(enf_geometry_side(&s.geometry, vertex, p), expected);
+                if (cases++ % 256 == 0)
+                    assert_int_equal(expected[p], oracle_side_by_kernel(&corner, &planes[p]));
+                zeros += expected[p] == 0;
+                assert_int_equal(enf_geometry_side(&s.geometry, vertex, p), expected[p]);
             }
         }
         filter += s.geometry.decided_by_filter;
@@ -245,10 +252,12 @@ static void shared_crossings_are_the_same_as_own_ones(void **unused) {
             assert_int_equal(own, POINTS + other.shared_count);
             for (vertex = 0; vertex <= own; vertex++) {
                 oracle_corner corner = describe_vertex(&s, &other, vertex);
-                for (int32_t p = 0; p < PLANES; p++) {
-                    oracle_plane plane = describe(&s, s.planes[p]);
-                    assert_int_equal(enf_geometry_side(&other, vertex, p), oracle_side(&corner, &plane));
-                }
+                int expected[PLANES];
+                oracle_plane planes[PLANES];
+                describe_planes(&s, planes);
+                oracle_sides(&corner, planes, PLANES, expected);
+                for (int32_t p = 0; p < PLANES; p++)
+                    assert_int_equal(enf_geometry_side(&other, vertex, p), expected[p]);
             }
         }
         free(other.crossings);
@@ -324,17 +333,22 @@ static oracle_corner *describe_loop(const scene *s, const enf_pool *pool, enf_lo
 /// The loop is a convex polygon on its plane: every edge plane holds the ends of its edge, and no corner but
 /// those lies on the other side of it.
 static void assert_convex(const scene *s, enf_pool *pool, enf_loop loop) {
-    assert_true(loop.count >= 3);
+    enum { MOST = 64 };
+    assert_true(loop.count >= 3 && loop.count < MOST);
     oracle_corner *corners = describe_loop(s, pool, loop);
-    oracle_plane plane = describe(s, s->planes[loop.plane]);
+    oracle_plane planes[MOST]; // of the edges, then the loop's
+    int inner[MOST], sides[MOST];
     for (int32_t i = 0; i < loop.count; i++) {
-        oracle_plane edge = describe(s, s->planes[pool->corners[loop.first + i].edge_plane]);
-        assert_int_equal(oracle_side(&corners[i], &plane), 0);
-        int32_t next = (i + 1) % loop.count;
-        int side = enf_pool_edge_side(pool, loop, i);
-        assert_int_not_equal(side, 0);
-        for (int32_t k = 0; k < loop.count; k++)
-            assert_int_equal(oracle_side(&corners[k], &edge), k == i || k == next ? 0 : side);
+        planes[i] = describe(s, s->planes[pool->corners[loop.first + i].edge_plane]);
+        inner[i] = enf_pool_edge_side(pool, loop, i);
+        assert_int_not_equal(inner[i], 0);
+    }
+    planes[loop.count] = describe(s, s->planes[loop.plane]);
+    for (int32_t k = 0; k < loop.count; k++) {
+        oracle_sides(&corners[k], planes, loop.count + 1, sides);
+        assert_int_equal(sides[loop.count], 0);
+        for (int32_t i = 0; i < loop.count; i++)
+            assert_int_equal(sides[i], k == i || k == (i + 1) % loop.count ? 0 : inner[i]);
     }
     free(corners);
 }
@@ -367,7 +381,8 @@ static enf_position oracle_classify(const scene *s, const enf_pool *pool, enf_lo
     oracle_plane by = describe(s, s->planes[plane]);
     bool behind = false, front = false;
     for (int32_t i = 0; i < loop.count; i++) {
-        int side = oracle_side(&corners[i], &by);
+        int side;
+        oracle_sides(&corners[i], &by, 1, &side);
         behind = behind || side < 0;
         front = front || side > 0;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real levels: every shared Quake level compiles, keeps its spawns, leaks only where it has a hole, and has
-// the same regions whichever tetrahedralizer is used.
+// Real levels: every shared Quake level compiles, passes every check, keeps its spawns, leaks only where it
+// has a hole, and has the same regions whichever tetrahedralizer is used.
 #include "pipeline_fixture.h"
 
 #include <dirent.h>
@@ -73,6 +73,7 @@ static void check_level(const char *path, const char *name) {
     check_leak(&builds[0], name);
     check_spawns(&builds[0], name);
     check_same_regions(&builds[0], &builds[1], name);
+    pipeline_check(&builds[0]);
     print_message("%s: %d tetrahedra, %d fine cells, %d regions, %d cells, %d openings\n", name,
                   (int)builds[0].complex.tetrahedron_count, (int)builds[0].complex.cell_count,
                   (int)builds[0].regions.region_count, (int)builds[0].cell_count,

@@ -352,6 +352,11 @@ static void spawn_points_may_be_given_and_groups_left_out(void **state) {
     assert_true(number_of(plain, "spawns") == 6);
     assert_non_null(strstr(plain, "[4.4, 3.65, 1.25]"));
     free(plain);
+    do_run("compile given.obj -o far.enf --spawn 1e300,0,-1e300"); // far outside is no error
+    plain = run(NULL, "info far.enf --json");
+    assert_true(number_of(plain, "spawns") == 5);
+    assert_true(number_of(plain, "spawns_in_cells") == 4);
+    free(plain);
     process ran = run_enfilade(NULL, "compile given.obj -o none.enf --exclude *");
     assert_int_equal(ran.status, 3);
     assert_non_null(strstr(ran.err, "given.obj"));
@@ -379,6 +384,28 @@ static void vertices_that_no_polygon_can_use_do_no_harm(void **state) {
     free(report);
     free(text);
     free(world);
+}
+
+static void worlds_may_be_tiny_or_immense(void **state) {
+    (void)state;
+    static const char *const scales[] = {"1e-12", "1e-6", "1024", "1e12"};
+    for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+        free(run(NULL, "gen four-rooms scale=%s -o scaled.obj", scales[i]));
+        do_run("compile scaled.obj -o scaled.enf");
+        free(run(NULL, "check scaled.enf"));
+        do_run("export scaled.enf -o scaled.svg");
+    }
+    for (int power = -300; power <= 100; power += 100) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "v 0 0 0\nv 1e%d 0 0\nv 0 1e%d 0\nv 0 0 1e%d\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n", power,
+                 power, power);
+        write_text("simplex.obj", text);
+        do_run("compile simplex.obj -o simplex.enf");
+        free(run(NULL, "check simplex.enf"));
+        do_run("export simplex.enf -o simplex.svg");
+        do_run("export simplex.enf -o simplex.json");
+    }
 }
 
 /// The figures of the thesis (4.3): sizes about as there, and a stop at which every room is a cell of its own
@@ -428,6 +455,7 @@ int main(void) {
         cmocka_unit_test(a_leak_is_a_warning_with_a_path),
         cmocka_unit_test(quiet_says_nothing_and_verbose_says_what_was_done),
         cmocka_unit_test(vertices_that_no_polygon_can_use_do_no_harm),
+        cmocka_unit_test(worlds_may_be_tiny_or_immense),
         cmocka_unit_test(the_worlds_of_the_thesis_fall_into_their_rooms),
         cmocka_unit_test(spawn_points_may_be_given_and_groups_left_out),
     };

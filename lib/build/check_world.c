@@ -216,6 +216,55 @@ static void check_volumes(enf_checker *checker) {
                         (long long)view->provenance->fine_cells_discarded);
 }
 
+/// The area of a piece from rounded corners, grid steps squared.
+static double piece_area(const enf_checker *checker, int32_t piece) {
+    enf_check_loop loop = enf_check_piece(checker, piece, 0); // its plane does not matter here
+    double sum[3] = {0, 0, 0};
+    const double *p = checker->exact.near[loop.corners[0].vertex];
+    for (int32_t i = 1; i + 1 < loop.count; i++) {
+        const double *q = checker->exact.near[loop.corners[i].vertex],
+                     *r = checker->exact.near[loop.corners[i + 1].vertex];
+        for (int k = 0; k < 3; k++) {
+            int l = (k + 1) % 3, m = (k + 2) % 3;
+            sum[k] += ((q[l] - p[l]) * (r[m] - p[m]) - (q[m] - p[m]) * (r[l] - p[l])) / 2;
+        }
+    }
+    double unit = checker->exact.unit;
+    return sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) * unit * unit;
+}
+
+/// Fronts and backs around each region, which rule 5 goes by; right to nine digits, or twelve of all.
+static void check_areas(enf_checker *checker) {
+    const enf_file_view *view = checker->view;
+    enf_check_begin(checker, "colour: areas",
+                    "the regions' reported areas of fronts and backs are those of their pieces");
+    double(*sum)[2] = enf_array_zeroed((size_t)view->region_count, sizeof *sum), total = 0;
+    if (!sum) {
+        enf_check_no_memory(checker);
+        return;
+    }
+    for (int32_t p = 0; p < view->piece_count; p++) {
+        int32_t cover = view->piece_cover[p];
+        if (cover < 0) continue;
+        double area = piece_area(checker, p) * view->frame->step * view->frame->step;
+        total += area;
+        for (int side = 0; side < 2; side++) {
+            int32_t face = view->piece_face[p][side];
+            if (face >= 0)
+                sum[view->fine_region[checker->face_cell[face]]][view->cover_side[cover] != side] += area;
+        }
+    }
+    for (int32_t r = 0; r < view->region_count && enf_check_holds(checker); r++, checker->row->tested++) {
+        double given[2] = {view->regions[r].front_area, view->regions[r].back_area};
+        for (int back = 0; back < 2; back++) {
+            if (!(fabs(sum[r][back] - given[back]) <= 1e-9 * given[back] + 1e-12 * total))
+                enf_check_break(checker, "region %d has %s of area %.17g, reported %.17g", (int)r,
+                                back ? "backs" : "fronts", sum[r][back], given[back]);
+        }
+    }
+    free(sum);
+}
+
 static bool in_cell(enf_checker *checker, const double grid[3], int32_t cell) {
     const enf_file_view *view = checker->view;
     for (int32_t f = view->fine_face[cell]; f < view->fine_face[cell + 1]; f++) {
@@ -277,6 +326,7 @@ void enf_check_colour(enf_checker *checker) {
     check_seals(checker);
     check_kinds(checker);
     check_volumes(checker);
+    check_areas(checker);
     check_spawns(checker);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clean, in this order:
-//   1 judge      polygons of excluded groups and with corners that are missing, not finite or beyond 1e150
+//   1 judge      polygons of excluded groups and with corners that are missing, not finite or beyond 1e100
 //   go;
 //                polygons of detail groups are set aside
 //   2 frame      the canonical axes and the grid step follow from the points (and polygons) in use (frame.c)
@@ -30,7 +30,7 @@
 #include <string.h>
 
 #define DEFAULT_WELD 1e-9        ///< of the diagonal of the bounding box
-#define LARGEST_COORDINATE 1e150 ///< squares and their sums stay finite
+#define LARGEST_COORDINATE 1e100 ///< volumes and their sums stay finite
 
 enum { CUTS, IS_DETAIL, IS_EXCLUDED };
 

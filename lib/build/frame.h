@@ -16,7 +16,7 @@ typedef struct enf_frame_rings {
         *place_of; ///< per soup point that they use: index into the points given to enf_frame_choose
 } enf_frame_rings;
 
-/// `points`: xyz of `count` different points, |x| <= 1e150, in any order; count may be 0. The polygons are
+/// `points`: xyz of `count` different points, |x| <= 1e100, in any order; count may be 0. The polygons are
 /// only looked at where the set of points is symmetric.
 void enf_frame_choose(enf_frame *frame, const double *points, size_t count, const enf_frame_rings *rings);
 

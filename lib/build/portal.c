@@ -244,12 +244,12 @@ typedef struct bounds {
 } bounds;
 
 static bounds loop_bounds(const finder *f, enf_loop loop) {
-    bounds box;
+    bounds box = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
     for (int32_t i = 0; i < loop.count; i++) {
         const double *at = position(f, f->pool.corners[loop.first + i].vertex);
         for (int k = 0; k < 3; k++) {
-            if (i == 0 || at[k] < box.low[k]) box.low[k] = at[k];
-            if (i == 0 || at[k] > box.high[k]) box.high[k] = at[k];
+            box.low[k] = fmin(box.low[k], at[k]);
+            box.high[k] = fmax(box.high[k], at[k]);
         }
     }
     return box;

@@ -151,7 +151,7 @@ static bool read_comment(reader *r) {
     double at[3];
     if (!take_numbers(r, at, 3, 3)) return true; // prose that begins with the word
     for (int a = 0; a < 3; a++)
-        if (!isfinite(at[a]) || fabs(at[a]) > 1e150) return reject_line(r);
+        if (!isfinite(at[a]) || fabs(at[a]) > 1e100) return reject_line(r);
     return enf_soup_add_spawn(r->soup, at[0], at[1], at[2]);
 }
 

@@ -8,7 +8,7 @@
 /// Why a polygon (or another line of the input) was left out, or changed.
 typedef enum enf_reject {
     ENF_REJECT_NOT_FINITE,      ///< a corner's coordinate is NaN or infinite
-    ENF_REJECT_TOO_LARGE,       ///< a corner's coordinate is beyond 1e150 (products would overflow)
+    ENF_REJECT_TOO_LARGE,       ///< a corner's coordinate is beyond 1e100 (volumes would overflow)
     ENF_REJECT_INDEX_RANGE,     ///< a corner names a vertex that the file does not have
     ENF_REJECT_TOO_FEW_CORNERS, ///< fewer than three different corners after welding
     ENF_REJECT_NO_AREA,         ///< all corners on one line, exactly

@@ -249,7 +249,10 @@ static enf_status make_spawns(enf_image *image, const enf_build *build, enf_erro
     double(*leak)[3] = enf_image_new(image, (size_t)leak_count, sizeof *leak);
     if (!spawns || !leak) return enf_fail_memory(error, "the spawn points");
     for (int32_t i = 0; i < regions->spawn_count; i++) {
-        enf_frame_to_world(&build->mesh.frame, &build->mesh.spawns[3 * i], spawns[i].position);
+        if (i < (int64_t)build->soup.spawn_count) // the input's own numbers, which the grid may not hold
+            memcpy(spawns[i].position, &build->soup.spawns[3 * i], sizeof spawns[i].position);
+        else
+            enf_frame_to_world(&build->mesh.frame, &build->mesh.spawns[3 * i], spawns[i].position);
         spawns[i].fine_cell = regions->spawn_cell[i];
         spawns[i].cell = spawns[i].fine_cell >= 0 ? build->cell_of[spawns[i].fine_cell] : -1;
     }
@@ -312,7 +315,7 @@ static enf_status make_cells(enf_image *image, const enf_build *build, enf_error
     }
     double step = build->mesh.frame.step;
     for (int32_t i = 0; i < build->cell_count; i++) {
-        cells[i].volume *= step * step * step;
+        cells[i].volume = cells[i].volume * step * step * step; // the cube alone may underflow
         close_box(cells[i].box_min, cells[i].box_max);
     }
     image->view.cells = cells;
