@@ -18,7 +18,7 @@
 #include "build/loop.h"
 #include "oracle.h"
 
-enum { POINTS = 14, PLANES = 12, CROSSINGS = 10, SCENE_KINDS = 10 };
+enum { POINTS = 14, PLANES = 12, CROSSINGS = 10, SCENE_KINDS = 12 };
 
 static const uint64_t seed = 1122;
 
@@ -58,6 +58,8 @@ static int64_t clamp(int64_t x) {
 
 static void random_points(scene *s, uint64_t *state) {
     const int64_t unit = INT64_C(1) << 50;
+    const int64_t few =
+        INT64_C(8) << between(state, 0, 8); // as many bits as doubles just can, or just can't, take
     int64_t origin[3], u[3], v[3], levels[3][3];
     for (int k = 0; k < 3; k++) {
         origin[k] = between(state, -largest / 2, largest / 2);
@@ -97,9 +99,15 @@ static void random_points(scene *s, uint64_t *state) {
             case 8:
                 x = i * largest + between(state, -2, 2);
                 break; // near a diagonal of the whole grid
-            default:
+            case 9:
                 x = k == 0 ? origin[0] : i * largest + between(state, -2, 2);
                 break; // that in an axis plane
+            case 10:
+                x = levels[k][between(state, 0, 2)] % few;
+                break; // corners of small boxes
+            default:
+                x = (origin[k] % few) + i * (u[k] % few) + j * (v[k] % few);
+                break; // in a plane, and small
             }
             s->points[3 * p + k] = (double)clamp(x);
         }

@@ -5,7 +5,6 @@
 
 #include "base/exact.h"
 #include "enfilade/run.h"
-#include "run/orient.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -255,48 +254,16 @@ static void the_summary_counts(void **state) {
     close_fixture(&o);
 }
 
-static double random_coordinate(uint64_t *seed, int bits) {
-    int64_t value = (int64_t)(next_random(seed) >> 1) % (INT64_C(1) << bits);
-    return (double)(next_random(seed) & 1 ? -value : value);
-}
-
-/// Four points, most of them in one plane or nearly so, with coordinates up to 2^53.
-static void the_two_predicates_agree(void **state) {
-    (void)state;
-    uint64_t seed = 17;
-    int zeros = 0;
-    print_message("seed %llu\n", (unsigned long long)seed);
-    for (int n = 0; n < 200000; n++) {
-        double p[4][3];
-        int bits = 1 + n % 53;
-        for (int k = 0; k < 3; k++) {
-            for (int a = 0; a < 3; a++) p[k][a] = random_coordinate(&seed, bits);
-        }
-        int s = (int)(next_random(&seed) % 5) - 2, t = (int)(next_random(&seed) % 5) - 2;
-        for (int a = 0; a < 3; a++) {
-            p[3][a] = p[0][a] + s * (p[1][a] - p[0][a]) / 2 + t * (p[2][a] - p[0][a]) / 2;
-            p[3][a] = nearbyint(fmax(-0x1p53, fmin(0x1p53, p[3][a])));
-        }
-        if (n % 2) p[3][n % 3] = fmax(-0x1p53, fmin(0x1p53 - 1, p[3][n % 3])) + (n % 4 == 1);
-        int expected = enf_points_orient(p[0], p[1], p[2], p[3]);
-        if (enf_orient(p[0], p[1], p[2], p[3]) != expected) fail_msg("case %d: not %d", n, expected);
-        zeros += expected == 0;
-    }
-    assert_true(zeros > 10000 && zeros < 190000);
-}
-
 static void extreme_coordinates_do_not_overflow_the_predicate(void **state) {
     (void)state;
     const double m = 0x1p53;
     const double a[3] = {-m, -m, -m}, b[3] = {m, -m, -m}, c[3] = {-m, m, -m}, d[3] = {m, m, m},
                  e[3] = {m, m, -m};
-    assert_int_equal(enf_orient(a, b, c, d), 1);
-    assert_int_equal(enf_orient(a, c, b, d), -1);
-    assert_int_equal(enf_orient(a, b, c, e), 0);
-    const double f[3] = {m, m, -m + 1}, g[3] = {m, m, m - 1}, h[3] = {m - 1, m, m};
-    assert_int_equal(enf_orient(a, b, c, f), 1);
-    assert_int_equal(enf_orient(a, d, c, g), enf_points_orient(a, d, c, g));
-    assert_int_equal(enf_orient(a, d, b, h), enf_points_orient(a, d, b, h));
+    assert_int_equal(enf_points_orient(a, b, c, d), 1);
+    assert_int_equal(enf_points_orient(a, c, b, d), -1);
+    assert_int_equal(enf_points_orient(a, b, c, e), 0);
+    const double f[3] = {m, m, -m + 1};
+    assert_int_equal(enf_points_orient(a, b, c, f), 1);
 }
 
 int main(void) {
@@ -309,7 +276,6 @@ int main(void) {
         cmocka_unit_test(what_is_not_a_number_is_outside),
         cmocka_unit_test(spawn_points_are_found_where_the_file_says),
         cmocka_unit_test(the_summary_counts),
-        cmocka_unit_test(the_two_predicates_agree),
         cmocka_unit_test(extreme_coordinates_do_not_overflow_the_predicate),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

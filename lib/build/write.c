@@ -4,7 +4,6 @@
 #include "build/write_parts.h"
 
 #include "base/array.h"
-#include "enfilade/run.h"
 #include "format/read.h"
 #include "format/save.h"
 #include "format/sections.h"

@@ -5,7 +5,7 @@
 #include "build/write_parts.h"
 
 #include "base/array.h"
-#include "run/locate.h"
+#include "format/locate.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 // Opening and closing: a mapped file, or one that already lies in memory.
 #include "enfilade/run.h"
 
+#include "format/locate.h"
 #include "format/read.h"
 
 #include <errno.h>
@@ -108,4 +109,8 @@ const enf_file_view *enf_world_file(const enf_world *world) {
 
 const char *enf_world_string(const enf_world *world, uint32_t string) {
     return (int64_t)string < world->view.string_bytes ? world->view.strings + string : "";
+}
+
+enf_place enf_world_locate(const enf_world *world, const double point[3], int32_t hint) {
+    return enf_view_locate(enf_world_file(world), point, hint);
 }

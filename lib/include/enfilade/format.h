@@ -261,4 +261,14 @@ typedef struct enf_file_view {
     const uint32_t *material_names; ///< strings
 } enf_file_view;
 
+typedef enum enf_world_kind { ENF_WORLD_AIR = 0, ENF_WORLD_ROCK = 1, ENF_WORLD_OUTSIDE = 2 } enf_world_kind;
+
+/// Where a point is.
+typedef struct enf_place {
+    int32_t cell;      ///< -1: in no cell (a discarded region, or outside the hull)
+    int32_t fine_cell; ///< -1: outside the convex hull of the world, or not finite
+    int32_t region;    ///< -1 likewise
+    enf_world_kind kind;
+} enf_place;
+
 #endif

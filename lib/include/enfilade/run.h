@@ -67,18 +67,8 @@ typedef struct enf_world_info {
 
 ENF_API void enf_world_get_info(const enf_world *world, enf_world_info *info);
 
-typedef enum enf_world_kind { ENF_WORLD_AIR = 0, ENF_WORLD_ROCK = 1, ENF_WORLD_OUTSIDE = 2 } enf_world_kind;
-
 /// "air", "rock" or "outside".
 ENF_API const char *enf_world_kind_name(enf_world_kind kind);
-
-/// Where a point is.
-typedef struct enf_place {
-    int32_t cell;      ///< -1: in no cell (a discarded region, or outside the hull)
-    int32_t fine_cell; ///< -1: outside the convex hull of the world, or not finite
-    int32_t region;    ///< -1 likewise
-    enf_world_kind kind;
-} enf_place;
 
 /// Finds a point given in world coordinates. `hint`: the fine cell of an earlier answer nearby, or -1; it
 /// changes the time, never the answer. Expected O(log n) without a hint, O(1) with a good one.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Point location on a checked view; the builder asks it too, before the file is written.
-#ifndef ENF_RUN_LOCATE_H
-#define ENF_RUN_LOCATE_H
+#ifndef ENF_FORMAT_LOCATE_H
+#define ENF_FORMAT_LOCATE_H
 
-#include "enfilade/run.h"
+#include "enfilade/format.h"
 
 /// enf_world_locate without a world around it. Uses the core arrays of the view only.
 enf_place enf_view_locate(const enf_file_view *view, const double point[3], int32_t hint);

@@ -6,9 +6,9 @@
 // A hint, the fine cell of an earlier answer, is tried first: its tetrahedron, then a walk towards the point
 // across faces (O. Devillers, S. Pion, M. Teillaud, "Walking in a triangulation", 2002), for a bounded number
 // of steps.
-#include "run/locate.h"
+#include "format/locate.h"
 
-#include "run/orient.h"
+#include "base/exact.h"
 
 #include <math.h>
 
@@ -37,7 +37,7 @@ static int face_side(const query *query, int32_t tetrahedron, int face) {
     load_point(query, corners[face_corner[face][0]], a);
     load_point(query, corners[face_corner[face][1]], b);
     load_point(query, corners[face_corner[face][2]], c);
-    return enf_orient(a, b, c, query->at);
+    return enf_points_orient(a, b, c, query->at);
 }
 
 /// +1 strictly inside the tetrahedron, 0 on its boundary, -1 outside. *away: a face that has the point
@@ -68,9 +68,9 @@ static int plane_side(const query *query, int32_t plane) {
         for (int i = 0; i < 3; i++) c[i] = a[i];
         double step = a[axis] < 0 ? 1 : -1;
         c[axis] += step;
-        return enf_orient(a, b, c, query->at) * (int)step;
+        return enf_points_orient(a, b, c, query->at) * (int)step;
     }
-    return enf_orient(a, b, c, query->at);
+    return enf_points_orient(a, b, c, query->at);
 }
 
 /// Cells before discarded space, then the lower number.
@@ -199,8 +199,4 @@ enf_place enf_view_locate(const enf_file_view *view, const double point[3], int3
     enf_place place = {view->fine_cell[query.best], query.best, region, ENF_WORLD_AIR};
     place.kind = (enf_world_kind)view->regions[region].kind;
     return place;
-}
-
-enf_place enf_world_locate(const enf_world *world, const double point[3], int32_t hint) {
-    return enf_view_locate(enf_world_file(world), point, hint);
 }
