@@ -190,7 +190,7 @@ static bool measure(enf_regions *regions, const enf_complex *complex, const int3
         enf_complex_measure_cell(complex, c, &bodies[regions->cell_region[c]]);
     }
     for (int32_t r = 0; r < regions->region_count; r++) {
-        regions->volume[r] = bodies[r].volume;
+        regions->volume[r] = fmax(bodies[r].volume, 0); // of hairlines, rounding may leave less than nothing
         bodies[r].surface = 0; // only the closed part of the faces counts
     }
     measure_pieces(regions, complex, face_cell, bodies);
