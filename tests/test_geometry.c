@@ -194,7 +194,7 @@ static bool random_crossing(scene *s, enf_geometry *geometry, uint64_t *state, i
 static void orientation_of_four_points_is_right(void **unused) {
     (void)unused;
     uint64_t state = seed;
-    for (long i = 0; i < scaled(40000); i++) {
+    for (long i = 0; i < scaled(120000); i++) {
         scene s = {.kind = (int)(i % SCENE_KINDS)};
         random_points(&s, &state);
         for (int k = 0; k < 10; k++) {
@@ -210,7 +210,7 @@ static void side_of_a_plane_is_right(void **unused) {
     (void)unused;
     uint64_t state = seed + 1, zeros = 0, cases = 0, filter = 0, exact = 0;
     oracle_plane planes[PLANES];
-    for (long i = 0; i < scaled(1500); i++) {
+    for (long i = 0; i < scaled(4500); i++) {
         scene s;
         if (!make_scene(&s, (int)(i % SCENE_KINDS), &state)) continue;
         int32_t vertex;

@@ -3,6 +3,7 @@
 #include "build/decimate.h"
 
 #include "base/array.h"
+#include "base/sets.h"
 #include "build/portal_heap.h"
 
 #include <errno.h>
@@ -52,25 +53,13 @@ void enf_decimation_free(enf_decimation *decimation) {
     *decimation = (enf_decimation){0};
 }
 
-/// The cells of the graph as sets: each points to a smaller one of its set, the smallest to itself.
-static int32_t find_smallest(int32_t *smaller, int32_t cell) {
-    while (smaller[cell] != cell) {
-        smaller[cell] = smaller[smaller[cell]];
-        cell = smaller[cell];
-    }
-    return cell;
-}
-
 /// Fills cell_of by doing the collapses again on numbers alone.
 static void number_cells(enf_decimation *out, int32_t graph_cells) {
     int32_t *cell_of = out->cell_of;
-    for (int32_t cell = 0; cell < graph_cells; ++cell) cell_of[cell] = cell;
-    for (size_t i = 0; i < out->collapse_count; ++i) {
-        int32_t kept = find_smallest(cell_of, out->collapses[i].kept);
-        int32_t gone = find_smallest(cell_of, out->collapses[i].gone);
-        cell_of[kept < gone ? gone : kept] = kept < gone ? kept : gone;
-    }
-    for (int32_t cell = 0; cell < graph_cells; ++cell) cell_of[cell] = find_smallest(cell_of, cell);
+    enf_sets_start(cell_of, graph_cells);
+    for (size_t i = 0; i < out->collapse_count; ++i)
+        enf_sets_unite(cell_of, out->collapses[i].kept, out->collapses[i].gone);
+    for (int32_t cell = 0; cell < graph_cells; ++cell) cell_of[cell] = enf_sets_find(cell_of, cell);
     out->cell_count = 0;
     for (int32_t cell = 0; cell < graph_cells; ++cell)
         cell_of[cell] = cell_of[cell] == cell ? out->cell_count++ : cell_of[cell_of[cell]];

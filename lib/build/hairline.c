@@ -2,18 +2,11 @@
 #include "build/hairline.h"
 
 #include "base/array.h"
+#include "base/sets.h"
 #include "build/loop.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static int32_t find(int32_t *parent, int32_t cell) {
-    while (parent[cell] != cell) {
-        parent[cell] = parent[parent[cell]];
-        cell = parent[cell];
-    }
-    return cell;
-}
 
 static double length(const double v[3]) {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -44,7 +37,8 @@ static int32_t join_round(const enf_complex *complex, const int32_t *face_cell, 
             const int32_t *face = complex->piece_face[p];
             if (complex->piece_cover[p] != ENF_PIECE_OPEN || face[0] < 0 || face[1] < 0) continue;
             if (!cell_kept[face_cell[face[0]]] || !cell_kept[face_cell[face[1]]]) continue;
-            int32_t a = find(parent, face_cell[face[0]]), b = find(parent, face_cell[face[1]]);
+            int32_t a = enf_sets_find(parent, face_cell[face[0]]),
+                    b = enf_sets_find(parent, face_cell[face[1]]);
             if (a == b) continue;
             if (pass == 0 && !(thick[a] && thick[b])) {
                 double area[3];
@@ -54,9 +48,8 @@ static int32_t join_round(const enf_complex *complex, const int32_t *face_cell, 
             } else if (pass == 1 &&
                        ((!thick[a] && doors[a].piece == p) || (!thick[b] && doors[b].piece == p))) {
                 bool both = thick[a] || thick[b];
-                int32_t root = a < b ? a : b;
-                parent[a < b ? b : a] = root;
-                thick[root] = both;
+                enf_sets_unite(parent, a, b);
+                thick[a < b ? a : b] = both;
                 if (doors[a].piece == p) doors[a].piece = -1;
                 if (doors[b].piece == p) doors[b].piece = -1;
                 joined++;
@@ -87,7 +80,7 @@ bool enf_complex_number_nodes(const enf_complex *complex, const bool *cell_kept,
         }
         *node_count = 0;
         for (int32_t c = 0; c < complex->cell_count; c++) {
-            int32_t root = find(parent, c);
+            int32_t root = enf_sets_find(parent, c);
             node_of[c] = !cell_kept[c] ? -1 : root == c ? (*node_count)++ : node_of[root];
         }
     }

@@ -2,6 +2,7 @@
 #include "build/leak.h"
 
 #include "base/array.h"
+#include "base/sets.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -15,14 +16,6 @@ static int compare_openings(const void *a, const void *b) {
     const opening *x = a, *y = b;
     if (x->width != y->width) return x->width > y->width ? -1 : 1;
     return (x->piece > y->piece) - (x->piece < y->piece);
-}
-
-static int32_t find(int32_t *parent, int32_t cell) {
-    while (parent[cell] != cell) {
-        parent[cell] = parent[parent[cell]];
-        cell = parent[cell];
-    }
-    return cell;
 }
 
 static int32_t side_cell(const enf_complex *complex, const int32_t *face_cell, int32_t piece, int side) {
@@ -43,13 +36,13 @@ static bool open_widest(const enf_complex *complex, const int32_t *face_cell, in
             openings[count++] = (opening){enf_complex_piece_width(complex, p), p};
         }
         qsort(openings, count, sizeof *openings, compare_openings);
-        for (int32_t c = 0; c <= complex->cell_count; c++) parent[c] = c;
-        for (size_t i = 0; i < count && find(parent, start) != find(parent, complex->cell_count); i++) {
+        enf_sets_start(parent, complex->cell_count + 1);
+        for (size_t i = 0;
+             i < count && enf_sets_find(parent, start) != enf_sets_find(parent, complex->cell_count); i++) {
             int32_t p = openings[i].piece;
             opened[p] = true;
             *width = openings[i].width;
-            parent[find(parent, side_cell(complex, face_cell, p, 0))] =
-                find(parent, side_cell(complex, face_cell, p, 1));
+            enf_sets_unite(parent, side_cell(complex, face_cell, p, 0), side_cell(complex, face_cell, p, 1));
         }
     }
     bool good = openings && parent;

@@ -15,6 +15,7 @@
 #include "build/region.h"
 
 #include "base/array.h"
+#include "base/sets.h"
 #include "build/leak.h"
 #include "build/spawn.h"
 #include "build/winding.h"
@@ -41,21 +42,6 @@ void enf_regions_free(enf_regions *regions) {
 
 // ---------------------------------------------------------------------------------------------- components
 
-static int32_t find(int32_t *parent, int32_t cell) {
-    while (parent[cell] != cell) {
-        parent[cell] = parent[parent[cell]];
-        cell = parent[cell];
-    }
-    return cell;
-}
-
-static void unite(int32_t *parent, int32_t a, int32_t b) {
-    a = find(parent, a);
-    b = find(parent, b);
-    if (a < b) parent[b] = a;
-    if (b < a) parent[a] = b;
-}
-
 /// The cells on both sides of a piece; -1 outside the hull.
 static void piece_cells(const enf_complex *complex, const int32_t *face_cell, int32_t piece,
                         int32_t cell[2]) {
@@ -75,31 +61,31 @@ static void join_cells(enf_regions *regions, enf_complex *complex, const int32_t
         if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
         if (crack > 0 && enf_complex_piece_width(complex, p) < crack) continue;
         piece_cells(complex, face_cell, p, cell);
-        unite(parent, cell[0] < 0 ? outside : cell[0], cell[1] < 0 ? outside : cell[1]);
+        enf_sets_unite(parent, cell[0] < 0 ? outside : cell[0], cell[1] < 0 ? outside : cell[1]);
     }
     if (!(crack > 0)) return;
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         piece_cells(complex, face_cell, p, cell);
         for (int side = 0; side < 2; side++) {
             bool wall = complex->piece_cover[p] != ENF_PIECE_OPEN;
-            if (wall && cell[side] >= 0) walled[find(parent, cell[side])] = true;
+            if (wall && cell[side] >= 0) walled[enf_sets_find(parent, cell[side])] = true;
         }
     }
-    walled[find(parent, outside)] = true;
+    walled[enf_sets_find(parent, outside)] = true;
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         piece_cells(complex, face_cell, p, cell);
         if (complex->piece_cover[p] != ENF_PIECE_OPEN || cell[0] < 0 || cell[1] < 0) continue;
-        int32_t a = find(parent, cell[0]), b = find(parent, cell[1]);
+        int32_t a = enf_sets_find(parent, cell[0]), b = enf_sets_find(parent, cell[1]);
         if (a == b || (walled[a] && walled[b])) continue;
         bool wall = walled[a] || walled[b];
-        unite(parent, a, b);
-        walled[find(parent, a)] = wall;
+        enf_sets_unite(parent, a, b);
+        walled[enf_sets_find(parent, a)] = wall;
     }
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
         piece_cells(complex, face_cell, p, cell);
         int32_t a = cell[0] < 0 ? outside : cell[0], b = cell[1] < 0 ? outside : cell[1];
-        if (find(parent, a) == find(parent, b)) continue;
+        if (enf_sets_find(parent, a) == enf_sets_find(parent, b)) continue;
         double area[3];
         enf_complex_piece_area(complex, p, area);
         regions->sealed++;
@@ -116,18 +102,18 @@ static bool colour_cells(enf_regions *regions, enf_complex *complex, const int32
     regions->cell_region = enf_array_new((size_t)cells, sizeof *regions->cell_region);
     bool good = parent && walled && regions->cell_region;
     if (good) {
-        for (int32_t c = 0; c <= cells; c++) parent[c] = c;
+        enf_sets_start(parent, cells + 1);
         join_cells(regions, complex, face_cell, crack, parent, walled);
-        for (int32_t c = 0; c <= cells; c++) parent[c] = c;
+        enf_sets_start(parent, cells + 1);
         for (int32_t p = 0; p < complex->pieces.count; p++) {
             int32_t cell[2];
             piece_cells(complex, face_cell, p, cell);
             if (complex->piece_cover[p] == ENF_PIECE_OPEN && cell[0] >= 0 && cell[1] >= 0) {
-                unite(parent, cell[0], cell[1]);
+                enf_sets_unite(parent, cell[0], cell[1]);
             }
         }
         for (int32_t c = 0; c < cells; c++) {
-            int32_t root = find(parent, c);
+            int32_t root = enf_sets_find(parent, c);
             regions->cell_region[c] = root == c ? regions->region_count++ : regions->cell_region[root];
         }
     }
@@ -191,7 +177,7 @@ static bool measure(enf_regions *regions, const enf_complex *complex, const int3
     }
     for (int32_t r = 0; r < regions->region_count; r++) {
         regions->volume[r] = fmax(bodies[r].volume, 0); // of hairlines, rounding may leave less than nothing
-        bodies[r].surface = 0; // only the closed part of the faces counts
+        bodies[r].surface = 0;                          // only the closed part of the faces counts
     }
     measure_pieces(regions, complex, face_cell, bodies);
     for (int32_t r = 0; r < regions->region_count; r++) {
