@@ -65,13 +65,18 @@ static void print_leak(const cli_job *job, const char *path, FILE *out) {
 
 static void warn_of_leak(const cli_job *job, const char *path) {
     const enf_regions *regions = &job->build.regions;
-    double at[3];
-    enf_frame_to_world(&job->build.mesh.frame, &job->build.mesh.spawns[3 * regions->leak_spawn], at);
+    const enf_frame *frame = &job->build.mesh.frame;
+    double at[3], neck[3];
+    enf_frame_to_world(frame, &job->build.mesh.spawns[3 * regions->leak_spawn], at);
+    enf_frame_to_world(frame, regions->leak_neck, neck);
     fprintf(stderr,
-            "warning: leak: from spawn point %" PRId32 " (%g %g %g) one can reach the outside of the world; ",
-            regions->leak_spawn, at[0], at[1], at[2]);
+            "warning: leak: from spawn point %" PRId32
+            " (%g %g %g) one can reach the outside of the world; the "
+            "narrowest place on the way is %.3g wide, at (%g %g %g); ",
+            regions->leak_spawn, at[0], at[1], at[2], regions->leak_width * frame->step, neck[0], neck[1],
+            neck[2]);
     if (path)
-        fprintf(stderr, "the path is in %s: close the hole that it goes through\n", path);
+        fprintf(stderr, "the path is in %s\n", path);
     else
         fputs("--leak FILE.pts (or .obj) writes the path\n", stderr);
 }

@@ -136,6 +136,10 @@ static void put_graph(enf_json *json, const cli_job *job, const cli_counts *coun
     enf_json_whole(json, "pairs", 0);
     enf_json_end_object(json);
     enf_json_bool(json, "leak", build->regions.leak);
+    if (build->regions.leak) {
+        enf_json_whole(json, "leak_spawn", build->regions.leak_spawn);
+        enf_json_number(json, "leak_width", build->regions.leak_width * build->mesh.frame.step);
+    }
     enf_json_begin_object(json, "predicates");
     enf_json_whole(json, "filter", (int64_t)build->complex.predicates_filter);
     enf_json_whole(json, "exact", (int64_t)build->complex.predicates_exact);

@@ -237,6 +237,8 @@ static void a_hole_is_a_leak_and_the_path_goes_through_it(void **state) {
     }
     assert_true(through);
     assert_true(build.regions.leak_width * build.mesh.frame.step <= 0.5 + 1e-12);
+    enf_frame_to_world(&build.mesh.frame, build.regions.leak_neck, at);
+    assert_true(at[0] >= 4 && at[0] <= 4.5 && at[1] >= 4 && at[1] <= 4.5);
     enf_build_free(&build);
 }
 

@@ -263,22 +263,27 @@ static void add_group(enf_checker *checker, const area *group, size_t count) {
 /// Polygons whose rounded corners span no area are dropped and counted. What is left open because of them has
 /// corners on one line but for rounding: no more area than two grid steps along its outline.
 static bool is_sliver(const enf_checker *checker, const enf_check_edge *edges, size_t count) {
-    double sum[3] = {0, 0, 0}, length = 0;
-    const double *origin = count ? checker->exact.near[edges[0].low] : NULL;
+    // Slivers may lie far apart: summed exactly, so that what is common to all corners cancels.
+    mpq_t sum[3], one, two;
+    double length = 0, square = 0;
+    mpq_inits(sum[0], sum[1], sum[2], one, two, NULL);
     for (size_t i = 0; i < count; i++) {
-        double p[3], q[3], square = 0;
+        const double *p = checker->exact.near[edges[i].low], *q = checker->exact.near[edges[i].high];
+        length += hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]) * abs(edges[i].turns);
         for (int k = 0; k < 3; k++) {
-            p[k] = checker->exact.near[edges[i].low][k] - origin[k];
-            q[k] = checker->exact.near[edges[i].high][k] - origin[k];
-            square += (p[k] - q[k]) * (p[k] - q[k]);
+            for (int swap = 0; swap < 2; swap++) {
+                mpq_set_d(one, p[(k + 1 + swap) % 3]);
+                mpq_set_d(two, q[(k + 2 - swap) % 3]);
+                mpq_mul(one, one, two);
+                mpq_set_si(two, swap ? -edges[i].turns : edges[i].turns, 1);
+                mpq_mul(one, one, two);
+                mpq_add(sum[k], sum[k], one);
+            }
         }
-        length += sqrt(square) * abs(edges[i].turns);
-        for (int k = 0; k < 3; k++)
-            sum[k] +=
-                edges[i].turns * (p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3]) / 2;
     }
-    double unit = checker->exact.unit;
-    return sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) * unit <= 2 * length;
+    for (int k = 0; k < 3; k++) square += mpq_get_d(sum[k]) * mpq_get_d(sum[k]) / 4;
+    mpq_clears(sum[0], sum[1], sum[2], one, two, NULL);
+    return sqrt(square) * checker->exact.unit <= 2 * length;
 }
 
 static void check_openings(enf_checker *checker) {

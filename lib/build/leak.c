@@ -23,10 +23,10 @@ static int32_t side_cell(const enf_complex *complex, const int32_t *face_cell, i
     return face < 0 ? complex->cell_count : face_cell[face]; // the last number stands for the outside
 }
 
-/// Opens the widest pieces first until the start is joined to the outside. Marks the pieces opened. False
-/// without memory.
+/// Opens the widest pieces first until the start is joined to the outside. Marks the pieces opened; *last is
+/// the narrowest of them. False without memory.
 static bool open_widest(const enf_complex *complex, const int32_t *face_cell, int32_t start, bool *opened,
-                        double *width) {
+                        opening *last) {
     opening *openings = enf_array_new((size_t)complex->pieces.count, sizeof *openings);
     int32_t *parent = enf_array_new((size_t)complex->cell_count + 1, sizeof *parent);
     if (openings && parent) {
@@ -41,7 +41,7 @@ static bool open_widest(const enf_complex *complex, const int32_t *face_cell, in
              i < count && enf_sets_find(parent, start) != enf_sets_find(parent, complex->cell_count); i++) {
             int32_t p = openings[i].piece;
             opened[p] = true;
-            *width = openings[i].width;
+            *last = openings[i];
             enf_sets_unite(parent, side_cell(complex, face_cell, p, 0), side_cell(complex, face_cell, p, 1));
         }
     }
@@ -142,11 +142,13 @@ bool enf_regions_trace_leak(enf_regions *regions, const enf_complex *complex, co
     }
     if (!regions->leak) return true;
     int32_t start = regions->spawn_cell[regions->leak_spawn], last = -1;
+    opening neck = {0};
     search search = {.opened = enf_array_zeroed((size_t)complex->pieces.count, sizeof *search.opened)};
-    bool good = search.opened &&
-                open_widest(complex, face_cell, start, search.opened, &regions->leak_width) &&
+    bool good = search.opened && open_widest(complex, face_cell, start, search.opened, &neck) &&
                 list_open_pieces(&search, complex, face_cell);
     if (good) {
+        regions->leak_width = neck.width;
+        enf_complex_loop_centre(complex, &complex->pieces, neck.piece, regions->leak_neck);
         int32_t exit = search_outside(&search, complex, face_cell, start, &last);
         good = exit < 0 || write_path(regions, complex, mesh, face_cell, &search, exit, last);
     }

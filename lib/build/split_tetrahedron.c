@@ -281,21 +281,22 @@ static void add_touching_edge(enf_splitter *splitter, face f) {
     }
 }
 
-/// Entry and exit of a face across the cut, read off its front part: its corners on the cut are where it
-/// begins (first corner after the edge along the cut) and ends.
+/// A face across the cut: its behind part has an edge along the cut, from where the face's outline goes to
+/// the front (exit) to where it comes back (entry), in the part's own order.
 static void add_crossing_segment(enf_splitter *splitter, face f, enf_loop behind, int32_t plane) {
     const enf_corner *corners = splitter->pool.corners + behind.first;
     for (int32_t i = 0; i < behind.count; i++) {
         if (corners[i].edge_plane != plane) continue;
         int32_t next = i + 1 < behind.count ? i + 1 : 0;
-        // Along the behind part's own order the edge on the cut runs from where the face goes to the front
-        // (exit) to where it comes back (entry).
         add_cut_segment(splitter, f, corners[next].vertex, corners[i].vertex);
         return;
     }
 }
 
-/// Cuts every face of the cell; faces behind go to the list at once, those in front to the list after them.
+enum { FRONT_MARK = 2 }; ///< in face.side, until order_faces has sorted the faces of the two new cells apart
+
+/// Cuts every face of the cell, once each so that both parts share their new vertices, and appends the parts
+/// behind and (marked) in front. Leaves the new face's edges in `segments`.
 static void cut_faces(enf_splitter *splitter, const job *cell, int32_t plane, size_t *behind_count,
                       size_t *front_count) {
     enf_pool *pool = &splitter->pool;
@@ -303,7 +304,6 @@ static void cut_faces(enf_splitter *splitter, const job *cell, int32_t plane, si
     pool->cut_count = 0;
     pool->share_cut = true;
     splitter->segment_count = 0;
-    // Two passes over the same cuts would make vertices twice: fronts are kept aside by swapping at the end.
     for (size_t i = 0; i < cell->face_count && !pool->failed; i++) {
         face f = splitter->faces[cell->face_first + i], behind = f, front = f;
         enf_position position = enf_pool_classify(pool, f.loop, plane);
@@ -315,15 +315,14 @@ static void cut_faces(enf_splitter *splitter, const job *cell, int32_t plane, si
         }
         if (position != ENF_POSITION_FRONT) add_face(splitter, behind);
         if (position == ENF_POSITION_FRONT || position == ENF_POSITION_ACROSS) {
-            front.facet = f.facet;
-            front.side |= 2; // marks the front cell's faces until they are moved behind the others
+            front.side |= FRONT_MARK;
             add_face(splitter, front);
         }
     }
     pool->share_cut = false;
     *behind_count = *front_count = 0;
     for (size_t i = base; i < splitter->face_count; i++) {
-        if (splitter->faces[i].side & 2) {
+        if (splitter->faces[i].side & FRONT_MARK) {
             (*front_count)++;
         } else {
             (*behind_count)++;
@@ -364,7 +363,7 @@ static bool order_faces(enf_splitter *splitter, size_t base, size_t behind_count
     size_t b = 0, f = behind_count + 1;
     for (size_t i = 0; i < count; i++) {
         face moved = source[i];
-        bool front = moved.side & 2;
+        bool front = moved.side & FRONT_MARK;
         moved.side &= 1;
         sorted[front ? f++ : b++] = moved;
     }
