@@ -128,7 +128,7 @@ void enf_gen_cavern(enf_gen_world *world, const enf_gen_options *options) {
     for (int r = 0; r < ROOM_COUNT && !world->failed; r++) {
         enf_gen_group(world, "room-%d", r + 1);
         add_room(world, &rooms[r], passages, &state);
-        enf_gen_spawn(world, rooms[r].x * steps_per_unit, rooms[r].y * steps_per_unit, HEIGHT / 2);
+        enf_gen_spawn(world, rooms[r].x * steps_per_unit, rooms[r].y * steps_per_unit, HEIGHT / 2.0);
     }
     for (int p = 0; p < PASSAGE_COUNT && !world->failed; p++) {
         enf_gen_group(world, "passage-%d", p + 1);

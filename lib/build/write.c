@@ -433,7 +433,7 @@ static enf_status make_portals(enf_image *image, const enf_build *build, enf_err
 /// The portals that lead out of each cell: count, prefix sum, fill.
 static enf_status make_cell_portals(enf_image *image, enf_error *error) {
     enf_file_view *view = &image->view;
-    enf_file_cell *cells = (enf_file_cell *)(uintptr_t)view->cells; // the image's own
+    enf_file_cell *cells = (enf_file_cell *)view->cells; // the image's own
     int32_t *list = enf_image_new(image, (size_t)view->portal_count, sizeof *list), sum = 0;
     if (!list) return enf_fail_memory(error, "the portals of cells");
     for (int32_t i = 0; i < view->portal_count; i++) cells[view->portals[i].from].portal_count++;

@@ -343,7 +343,7 @@ static bool find_details(detail_finder *f) {
 static bool list_cells(drawer *d, const detail_finder *f, const int32_t *fine_offset, const int32_t *fine,
                        int32_t *stamp, int32_t *found) {
     enf_file_view *view = &d->image->view;
-    enf_file_cell *cells = (enf_file_cell *)(uintptr_t)view->cells; // the image's own
+    enf_file_cell *cells = (enf_file_cell *)view->cells; // the image's own
     size_t next = 0;
     for (int32_t i = 0; i < view->cell_count; i++) {
         cells[i].triangle_first = (int64_t)d->list_count;
