@@ -82,7 +82,7 @@ static void name_path(enf_error *error, const char *path) {
 enf_status enf_world_open_path(enf_world **world, const char *path, const enf_open_options *options,
                                enf_error *error) {
     *world = NULL;
-    void *mapping;
+    void *mapping = NULL;
     size_t size = 0;
     enf_status status = map_file(path, &mapping, &size, error);
     if (status) return status;
