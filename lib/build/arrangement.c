@@ -143,6 +143,8 @@ typedef struct flood_block {
 typedef struct flood_worker {
     enf_geometry geometry; ///< for its counters
     int32_t *stamp;        ///< per tetrahedron: the last polygon + 1 that tested it
+    int32_t *point_stamp;  ///< per point: the last polygon + 1 whose plane it was held against
+    int8_t *point_side;    ///< and the answer
     int32_t *stack;
     size_t capacity;
     bool failed;
@@ -158,17 +160,25 @@ typedef struct box {
     double low[3], high[3];
 } box;
 
-static bool box_meets_tetrahedron(const box *box, const double *points, const int32_t corner[4]) {
+typedef enum contact {
+    CONTACT_NONE,  ///< apart
+    CONTACT_TOUCH, ///< they may share boundary points, but no inner point of the tetrahedron
+    CONTACT_ENTER, ///< the polygon may reach inside
+} contact;
+
+static contact box_contact(const box *box, const double *points, const int32_t corner[4]) {
+    contact found = CONTACT_ENTER;
     for (int i = 0; i < 3; i++) {
-        int below = 0, above = 0;
+        double low = HUGE_VAL, high = -HUGE_VAL;
         for (int k = 0; k < 4; k++) {
             double x = points[3 * (size_t)corner[k] + (size_t)i];
-            below += x < box->low[i];
-            above += x > box->high[i];
+            low = x < low ? x : low;
+            high = x > high ? x : high;
         }
-        if (below == 4 || above == 4) return false;
+        if (high < box->low[i] || low > box->high[i]) return CONTACT_NONE;
+        if (high == box->low[i] || low == box->high[i]) found = CONTACT_TOUCH;
     }
-    return true;
+    return found;
 }
 
 static box polygon_box(const enf_mesh *mesh, size_t polygon) {
@@ -187,33 +197,60 @@ static box polygon_box(const enf_mesh *mesh, size_t polygon) {
     return out;
 }
 
-/// False if an edge plane of the polygon has the whole tetrahedron strictly outside.
-static bool within_edges(flood_worker *worker, const enf_arrangement *arrangement, size_t polygon,
-                         const int32_t corner[4]) {
+/// By the polygon's edge planes: one that has the whole tetrahedron outside, or none of it strictly inside.
+static contact edge_contact(flood_worker *worker, const enf_arrangement *arrangement, size_t polygon,
+                            const int32_t corner[4]) {
     const enf_mesh *mesh = arrangement->mesh;
+    contact found = CONTACT_ENTER;
     for (int64_t c = mesh->polygon_corner[polygon]; c < mesh->polygon_corner[polygon + 1]; c++) {
         int32_t plane = arrangement->edge_plane_first + (int32_t)c;
-        int k = 0;
-        while (k < 4 && enf_geometry_side(&worker->geometry, corner[k], plane) > 0) k++;
-        if (k == 4) return false;
+        bool on = false, inside = false;
+        for (int k = 0; k < 4 && !inside; k++) {
+            int side = enf_geometry_side(&worker->geometry, corner[k], plane);
+            on |= side == 0;
+            inside = side < 0;
+        }
+        if (!inside && !on) return CONTACT_NONE;
+        if (!inside) found = CONTACT_TOUCH;
     }
-    return true;
+    return found;
+}
+
+/// The side of the polygon's plane on which a point lies; asked once for all the tetrahedra around the point.
+static int side_of_plane(flood_worker *worker, const enf_arrangement *arrangement, size_t polygon,
+                         int32_t point) {
+    const int32_t mark = (int32_t)polygon + 1;
+    if (worker->point_stamp[point] != mark) {
+        worker->point_stamp[point] = mark;
+        worker->point_side[point] =
+            (int8_t)enf_geometry_side(&worker->geometry, point, arrangement->polygon_plane[polygon]);
+    }
+    return worker->point_side[point];
 }
 
 /// How the polygon meets a tetrahedron: -2 not at all, -1 it may touch it, else as enf_candidate.how.
 static int meets(flood_worker *worker, const enf_arrangement *arrangement, size_t polygon, const box *box,
                  const int32_t corner[4]) {
-    if (!box_meets_tetrahedron(box, arrangement->mesh->points, corner)) return -2;
+    contact boxes = box_contact(box, arrangement->mesh->points, corner);
+    if (boxes == CONTACT_NONE) return -2;
     int behind = 0, front = 0, off = -1;
     for (int k = 0; k < 4; k++) {
-        int sign = enf_geometry_side(&worker->geometry, corner[k], arrangement->polygon_plane[polygon]);
+        int sign = side_of_plane(worker, arrangement, polygon, corner[k]);
         behind += sign < 0;
         front += sign > 0;
         if (sign != 0) off = k;
     }
-    if (behind == 4 || front == 4 || !within_edges(worker, arrangement, polygon, corner)) return -2;
-    if (behind && front) return ENF_MEETS_ACROSS;
-    return behind + front == 1 ? off : -1;
+    if (behind == 4 || front == 4) return -2;
+    bool across = behind && front;
+    if (across ? boxes == CONTACT_TOUCH : behind + front != 1) return -1;
+    switch (edge_contact(worker, arrangement, polygon, corner)) {
+    case CONTACT_NONE:
+        return -2;
+    case CONTACT_TOUCH:
+        return -1;
+    default:
+        return across ? ENF_MEETS_ACROSS : off;
+    }
 }
 
 static bool owns_facet(const enf_tet_mesh *tets, int32_t tetrahedron, int k) {
@@ -292,7 +329,9 @@ static bool find_candidates(enf_arrangement *arrangement, int threads) {
         all.workers[w].geometry = arrangement->geometry;
         all.workers[w].geometry.decided_by_filter = all.workers[w].geometry.decided_exactly = 0;
         all.workers[w].stamp = enf_array_zeroed((size_t)arrangement->tets.count, sizeof(int32_t));
-        good = all.workers[w].stamp != NULL;
+        all.workers[w].point_stamp = enf_array_zeroed(arrangement->mesh->point_count, sizeof(int32_t));
+        all.workers[w].point_side = enf_array_new(arrangement->mesh->point_count, sizeof(int8_t));
+        good = all.workers[w].stamp && all.workers[w].point_stamp && all.workers[w].point_side;
     }
     if (good) {
         enf_parallel_for(threads, block_count, flood_job, &all);
@@ -303,6 +342,8 @@ static bool find_candidates(enf_arrangement *arrangement, int threads) {
         arrangement->geometry.decided_by_filter += all.workers[w].geometry.decided_by_filter;
         arrangement->geometry.decided_exactly += all.workers[w].geometry.decided_exactly;
         free(all.workers[w].stamp);
+        free(all.workers[w].point_stamp);
+        free(all.workers[w].point_side);
         free(all.workers[w].stack);
     }
     for (int32_t b = 0; all.blocks && b < block_count; b++) free(all.blocks[b].found);

@@ -284,6 +284,29 @@ const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t 
                                       : &geometry->crossings[i - geometry->shared_count];
 }
 
+/// How many of the points that define `plane` also define both a and b.
+static int shared_points(const int32_t plane[3], const int32_t a[3], const int32_t b[3]) {
+    int count = 0;
+    for (int i = 0; i < 3; i++) {
+        if (plane[i] < 0) continue;
+        bool in_a = plane[i] == a[0] || plane[i] == a[1] || plane[i] == a[2];
+        bool in_b = plane[i] == b[0] || plane[i] == b[1] || plane[i] == b[2];
+        count += in_a && in_b;
+    }
+    return count;
+}
+
+/// Does the plane go through the line in which two planes of the crossing meet, because two points say so?
+/// The usual way for a crossing to lie on a fourth plane, known without arithmetic.
+static bool shares_line(const enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
+    for (int k = 0; k < 3; k++) {
+        const int32_t *a = geometry->planes[crossing->plane[k]],
+                      *b = geometry->planes[crossing->plane[(k + 1) % 3]];
+        if (shared_points(geometry->planes[plane], a, b) >= 2) return true;
+    }
+    return false;
+}
+
 static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
     if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
     const enf_plane_filter *filter = &geometry->filters[plane];
@@ -307,6 +330,10 @@ static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing
                                   filter->offset_unit * crossing->weight_unit)) {
         geometry->decided_by_filter++; // nothing was rounded: 0 is 0
         return value > 0 ? crossing->weight_sign : value < 0 ? -crossing->weight_sign : 0;
+    }
+    if (shares_line(geometry, crossing, plane)) {
+        geometry->decided_by_filter++;
+        return 0;
     }
     geometry->decided_exactly++;
     exact_plane exact[4];
