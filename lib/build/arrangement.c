@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Candidates by flooding: the tetrahedra that a polygon touches are connected through their facets, so a walk
-// that starts at one of its corners and enters every neighbour that may touch it finds them all, in time
-// proportional to what it finds.
+// Most polygons of a finely drawn world are facets of the triangulation already, or tiled by a few: they are
+// looked up. Candidates for the others by flooding: the tetrahedra that a polygon touches are connected
+// through their facets, so a walk that starts at one of its corners and enters every neighbour that may touch
+// it finds them all, in time proportional to what it finds.
 #include "build/arrangement.h"
 
 #include "base/array.h"
@@ -258,6 +259,59 @@ static bool owns_facet(const enf_tet_mesh *tets, int32_t tetrahedron, int k) {
     return sides[0] == tetrahedron || sides[0] < 0;
 }
 
+enum { FACETED_CORNERS_MAX = 16 }; ///< polygons with more are flooded at once
+
+/// The facets that tile the polygon, where the triangulation carries it already: facets do not overlap, so
+/// there is at most one way to triangulate it with them, and the facet at each edge is found by trying all
+/// apexes. Returns their number (corners - 2), or 0 if they do not tile it.
+static int tiling_facets(const enf_arrangement *arrangement, size_t polygon, int32_t *facets) {
+    const enf_mesh *mesh = arrangement->mesh;
+    const int32_t *corner = mesh->corners + mesh->polygon_corner[polygon];
+    int corners = (int)(mesh->polygon_corner[polygon + 1] - mesh->polygon_corner[polygon]), count = 0;
+    if (corners > FACETED_CORNERS_MAX) return 0;
+    struct {
+        int first, last;
+    } stack[FACETED_CORNERS_MAX] = {{0, corners - 1}}; // chains of corners still to be closed by a facet
+    for (int depth = 1; depth > 0;) {
+        int first = stack[--depth].first, last = stack[depth].last, apex = first + 1;
+        int32_t facet = -1;
+        for (; apex < last; apex++) {
+            facet = enf_tet_mesh_facet(&arrangement->tets, corner[first], corner[apex], corner[last]);
+            if (facet >= 0) break;
+        }
+        if (facet < 0) return 0;
+        facets[count++] = facet;
+        if (apex > first + 1) {
+            stack[depth].first = first;
+            stack[depth++].last = apex;
+        }
+        if (last > apex + 1) {
+            stack[depth].first = apex;
+            stack[depth++].last = last;
+        }
+    }
+    return count;
+}
+
+static bool add_found(flood_block *block, int32_t tetrahedron, int32_t polygon, int how) {
+    if (!enf_array_reserve(block->found, block->capacity, block->count + 1)) return false;
+    block->found[block->count++] = (found){tetrahedron, {polygon, how}};
+    return true;
+}
+
+/// A polygon that facets tile crosses nothing: it covers them, and that is all.
+static bool add_faceted(const enf_tet_mesh *tets, flood_block *block, size_t polygon, const int32_t *facets,
+                        int facet_count) {
+    for (int i = 0; i < facet_count; i++) {
+        const int32_t *sides = tets->facet_sides[facets[i]];
+        int32_t owner = sides[0] >= 0 ? sides[0] : sides[1];
+        int k = 0;
+        while (tets->facets[owner][k] != facets[i]) k++;
+        if (!add_found(block, owner, (int32_t)polygon, k)) return false;
+    }
+    return true;
+}
+
 static bool flood_polygon(const enf_arrangement *arrangement, flood_worker *worker, flood_block *block,
                           size_t polygon) {
     const enf_mesh *mesh = arrangement->mesh;
@@ -274,8 +328,7 @@ static bool flood_polygon(const enf_arrangement *arrangement, flood_worker *work
         int how = meets(worker, arrangement, polygon, &box, tets->corners[t]);
         if (how == -2) continue;
         if (how == ENF_MEETS_ACROSS || (how >= 0 && owns_facet(tets, t, how))) {
-            if (!enf_array_reserve(block->found, block->capacity, block->count + 1)) return false;
-            block->found[block->count++] = (found){t, {(int32_t)polygon, how}};
+            if (!add_found(block, t, (int32_t)polygon, how)) return false;
         }
         if (!enf_array_reserve(worker->stack, worker->capacity, depth + 4)) return false;
         for (int k = 0; k < 4; k++) {
@@ -295,7 +348,11 @@ static void flood_job(void *user, int32_t index, int thread) {
     size_t end = ((size_t)index + 1) * BLOCK;
     if (end > all->arrangement->mesh->polygon_count) end = all->arrangement->mesh->polygon_count;
     for (size_t p = (size_t)index * BLOCK; p < end && !worker->failed; p++) {
-        if (!flood_polygon(all->arrangement, worker, &all->blocks[index], p)) worker->failed = true;
+        int32_t facets[FACETED_CORNERS_MAX];
+        int tiling = tiling_facets(all->arrangement, p, facets);
+        bool good = tiling ? add_faceted(&all->arrangement->tets, &all->blocks[index], p, facets, tiling)
+                           : flood_polygon(all->arrangement, worker, &all->blocks[index], p);
+        if (!good) worker->failed = true;
     }
 }
 
@@ -361,5 +418,7 @@ enf_status enf_arrangement_make(enf_arrangement *arrangement, const enf_mesh *me
         enf_arrangement_free(arrangement);
         return enf_fail_memory(error, "the polygons' candidates");
     }
+    free(arrangement->tets.facet_table); // for looking polygons up; not needed any more
+    arrangement->tets.facet_table = NULL;
     return ENF_OK;
 }

@@ -12,6 +12,7 @@ void enf_tet_mesh_free(enf_tet_mesh *mesh) {
     free(mesh->facet_corners);
     free(mesh->facet_sides);
     free(mesh->point_tetrahedron);
+    free(mesh->facet_table);
     memset(mesh, 0, sizeof *mesh);
 }
 
@@ -41,18 +42,31 @@ static uint64_t hash_face(const int32_t face[3]) {
     return hash ^ (hash >> 31);
 }
 
-static enf_status pair_faces(enf_tet_mesh *mesh, int32_t *table, size_t mask, enf_error *error) {
+/// Where the face is in the table, or where it would be.
+static size_t slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
+    size_t slot = hash_face(face) & mesh->facet_table_mask;
+    for (int32_t facet; (facet = mesh->facet_table[slot]) >= 0; slot = (slot + 1) & mesh->facet_table_mask) {
+        if (memcmp(mesh->facet_corners[facet], face, 3 * sizeof *face) == 0) break;
+    }
+    return slot;
+}
+
+int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c) {
+    const int32_t corners[4] = {a, b, c, -1};
+    int32_t face[3];
+    sorted_face(corners, 3, face);
+    return mesh->facet_table[slot_of(mesh, face)];
+}
+
+static enf_status pair_faces(enf_tet_mesh *mesh, enf_error *error) {
     for (int32_t t = 0; t < mesh->count; t++) {
         for (int k = 0; k < 4; k++) {
             int32_t face[3];
             int side = sorted_face(mesh->corners[t], k, face);
-            size_t slot = hash_face(face) & mask;
-            while (table[slot] >= 0 && memcmp(mesh->facet_corners[table[slot]], face, sizeof face) != 0) {
-                slot = (slot + 1) & mask;
-            }
-            int32_t facet = table[slot];
+            size_t slot = slot_of(mesh, face);
+            int32_t facet = mesh->facet_table[slot];
             if (facet < 0) {
-                facet = table[slot] = mesh->facet_count++;
+                facet = mesh->facet_table[slot] = mesh->facet_count++;
                 memcpy(mesh->facet_corners[facet], face, sizeof face);
                 mesh->facet_sides[facet][0] = mesh->facet_sides[facet][1] = -1;
             }
@@ -82,21 +96,23 @@ enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t c
     mesh->point_count = point_count;
     size_t slots = 16;
     while (slots < 6 * count) slots *= 2;
-    int32_t *table = enf_array_new(slots, sizeof *table);
+    mesh->facet_table = enf_array_new(slots, sizeof *mesh->facet_table);
+    mesh->facet_table_mask = slots - 1;
     mesh->facets = enf_array_new(count, sizeof *mesh->facets);
     mesh->facet_corners = enf_array_new(4 * count, sizeof *mesh->facet_corners);
     mesh->facet_sides = enf_array_new(4 * count, sizeof *mesh->facet_sides);
     mesh->point_tetrahedron = enf_array_new((size_t)point_count, sizeof *mesh->point_tetrahedron);
     enf_status status = ENF_OK;
-    if (!table || !mesh->facets || !mesh->facet_corners || !mesh->facet_sides || !mesh->point_tetrahedron) {
+    if (!mesh->facet_table || !mesh->facets || !mesh->facet_corners || !mesh->facet_sides ||
+        !mesh->point_tetrahedron) {
         status = enf_fail_memory(error, "the tetrahedra's faces");
     } else {
-        for (size_t i = 0; i < slots; i++) table[i] = -1;
+        for (size_t i = 0; i < slots; i++) mesh->facet_table[i] = -1;
         for (int32_t i = 0; i < point_count; i++) mesh->point_tetrahedron[i] = -1;
         for (int32_t t = mesh->count - 1; t >= 0; t--) {
             for (int k = 0; k < 4; k++) mesh->point_tetrahedron[corners[t][k]] = t;
         }
-        status = pair_faces(mesh, table, slots - 1, error);
+        status = pair_faces(mesh, error);
         for (int32_t i = 0; i < point_count && status == ENF_OK; i++) {
             if (mesh->point_tetrahedron[i] >= 0) continue;
             status = enf_fail(error, ENF_NO_RESOURCES,
@@ -104,7 +120,6 @@ enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t c
                               (int)i);
         }
     }
-    free(table);
     if (status != ENF_OK) {
         enf_tet_mesh_free(mesh);
         return status;

@@ -16,6 +16,9 @@ typedef struct enf_tet_mesh {
 
     int32_t point_count;
     int32_t *point_tetrahedron; ///< one tetrahedron at each point, or -1
+
+    int32_t *facet_table; ///< facets by their corners: open hashing, -1 = free
+    size_t facet_table_mask;
 } enf_tet_mesh;
 
 void enf_tet_mesh_free(enf_tet_mesh *mesh);
@@ -25,5 +28,8 @@ void enf_tet_mesh_free(enf_tet_mesh *mesh);
 /// tetrahedralizer's output is broken then.
 enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t count, int32_t point_count,
                              enf_error *error);
+
+/// The facet with these three corners, in any order, or -1.
+int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c);
 
 #endif
