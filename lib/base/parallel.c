@@ -6,40 +6,49 @@
 
 enum { THREADS_MAX = 64 };
 
-typedef struct crew {
+typedef struct shift {
+    const enf_crew *crew;
     void (*job)(void *user, int32_t index, int thread);
     void *user;
     int32_t count;
     atomic_int next;
-} crew;
+    atomic_bool stopped;
+} shift;
 
 typedef struct worker {
-    crew *crew;
+    shift *shift;
     int thread;
     pthread_t handle;
 } worker;
 
 static void *work(void *argument) {
     worker *me = argument;
-    for (;;) {
-        int index = atomic_fetch_add(&me->crew->next, 1);
-        if (index >= me->crew->count) return NULL;
-        me->crew->job(me->crew->user, index, me->thread);
+    shift *all = me->shift;
+    const enf_crew *crew = all->crew;
+    while (!atomic_load(&all->stopped)) {
+        int index = atomic_fetch_add(&all->next, 1);
+        if (index >= all->count) break;
+        if (me->thread == 0 && crew->watch && !crew->watch(crew->user, (double)index / all->count)) {
+            atomic_store(&all->stopped, true);
+            break;
+        }
+        all->job(all->user, index, me->thread);
     }
+    return NULL;
 }
 
-void enf_parallel_for(int threads, int32_t count, void (*job)(void *user, int32_t index, int thread),
+bool enf_parallel_for(const enf_crew *crew, int32_t count, void (*job)(void *user, int32_t index, int thread),
                       void *user) {
-    crew all = {.job = job, .user = user, .count = count};
+    shift all = {.crew = crew, .job = job, .user = user, .count = count};
     worker workers[THREADS_MAX];
-    if (threads > THREADS_MAX) threads = THREADS_MAX;
+    int threads = crew->threads < THREADS_MAX ? crew->threads : THREADS_MAX, started = 1;
     if (threads > count) threads = count;
-    int started = 1;
     for (; started < threads; started++) {
-        workers[started] = (worker){.crew = &all, .thread = started};
+        workers[started] = (worker){.shift = &all, .thread = started};
         if (pthread_create(&workers[started].handle, NULL, work, &workers[started]) != 0) break;
     }
-    workers[0] = (worker){.crew = &all};
+    workers[0] = (worker){.shift = &all};
     work(&workers[0]);
     for (int i = 1; i < started; i++) pthread_join(workers[i].handle, NULL);
+    return !atomic_load(&all.stopped);
 }

@@ -4,12 +4,21 @@
 #ifndef ENF_BASE_PARALLEL_H
 #define ENF_BASE_PARALLEL_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-/// Calls job(user, i, thread) once for each i in 0..count-1, on up to `threads` threads (thread numbers
-/// 0..threads-1; the caller's own is 0). Falls back to fewer threads where the system refuses them. Returns
-/// when all are done.
-void enf_parallel_for(int threads, int32_t count, void (*job)(void *user, int32_t index, int thread),
+/// Who works, and who watches: `watch` (may be null) is called now and then, on the caller's own thread, with
+/// the share of the jobs that are dealt out; when it returns false the jobs not yet begun are dropped.
+typedef struct enf_crew {
+    int threads; ///< 1 or more
+    bool (*watch)(void *user, double fraction);
+    void *user;
+} enf_crew;
+
+/// Calls job(user, i, thread) once for each i in 0..count-1, on up to crew->threads threads (thread numbers
+/// from 0; the caller's own is 0). Falls back to fewer threads where the system refuses them. Returns when
+/// all are done; false if the watch stopped them.
+bool enf_parallel_for(const enf_crew *crew, int32_t count, void (*job)(void *user, int32_t index, int thread),
                       void *user);
 
 #endif

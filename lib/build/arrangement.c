@@ -376,7 +376,8 @@ static bool sort_candidates(enf_arrangement *arrangement, const flood_block *blo
     return true;
 }
 
-static bool find_candidates(enf_arrangement *arrangement, int threads) {
+static bool find_candidates(enf_arrangement *arrangement, const enf_crew *crew, bool *stopped) {
+    int threads = crew->threads;
     int32_t block_count = (int32_t)((arrangement->mesh->polygon_count + BLOCK - 1) / BLOCK);
     flood all = {.arrangement = arrangement,
                  .blocks = enf_array_zeroed((size_t)block_count, sizeof *all.blocks),
@@ -391,7 +392,7 @@ static bool find_candidates(enf_arrangement *arrangement, int threads) {
         good = all.workers[w].stamp && all.workers[w].point_stamp && all.workers[w].point_side;
     }
     if (good) {
-        enf_parallel_for(threads, block_count, flood_job, &all);
+        *stopped = !enf_parallel_for(crew, block_count, flood_job, &all);
         for (int w = 0; w < threads; w++) good = good && !all.workers[w].failed;
         good = good && sort_candidates(arrangement, all.blocks, block_count);
     }
@@ -410,13 +411,16 @@ static bool find_candidates(enf_arrangement *arrangement, int threads) {
 }
 
 enf_status enf_arrangement_make(enf_arrangement *arrangement, const enf_mesh *mesh, enf_tet_mesh tets,
-                                int threads, enf_error *error) {
+                                const enf_crew *crew, enf_error *error) {
     memset(arrangement, 0, sizeof *arrangement);
     arrangement->mesh = mesh;
     arrangement->tets = tets;
-    if (!make_planes(arrangement) || !find_candidates(arrangement, threads > 0 ? threads : 1)) {
+    bool stopped = false;
+    bool good = make_planes(arrangement) && find_candidates(arrangement, crew, &stopped);
+    if (!good || stopped) {
         enf_arrangement_free(arrangement);
-        return enf_fail_memory(error, "the polygons' candidates");
+        return good ? enf_fail(error, ENF_NO_RESOURCES, "cancelled")
+                    : enf_fail_memory(error, "the polygons' candidates");
     }
     free(arrangement->tets.facet_table); // for looking polygons up; not needed any more
     arrangement->tets.facet_table = NULL;

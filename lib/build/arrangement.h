@@ -4,6 +4,7 @@
 #ifndef ENF_BUILD_ARRANGEMENT_H
 #define ENF_BUILD_ARRANGEMENT_H
 
+#include "base/parallel.h"
 #include "build/clean.h"
 #include "build/geometry.h"
 #include "build/tetrahedra.h"
@@ -36,6 +37,6 @@ void enf_arrangement_free(enf_arrangement *arrangement);
 /// Planes and candidates for clean polygons over tetrahedra (taken over). Candidates are found by walking
 /// from each polygon's corners through the tetrahedra it touches.
 enf_status enf_arrangement_make(enf_arrangement *arrangement, const enf_mesh *mesh, enf_tet_mesh tets,
-                                int threads, enf_error *error);
+                                const enf_crew *crew, enf_error *error);
 
 #endif

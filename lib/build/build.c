@@ -28,6 +28,8 @@ typedef struct kitchen {
     enf_crossing *crossings;
     int32_t *node_of; ///< fine cell to node of the graph
     const char *stage;
+    double begun, share; ///< the part of the stage that is at work: where it begins and how much it is of all
+    enf_crew crew;
 } kitchen;
 
 void enf_build_free(enf_build *build) {
@@ -54,7 +56,8 @@ static void say(kitchen *k, const char *format, ...) {
 
 static bool tell(void *user, double fraction) {
     kitchen *k = user;
-    return !k->options->progress || k->options->progress(k->options->progress_user, k->stage, fraction);
+    return !k->options->progress ||
+           k->options->progress(k->options->progress_user, k->stage, k->begun + k->share * fraction);
 }
 
 // ---------------------------------------------------------------------------------------------- stages
@@ -82,11 +85,12 @@ static enf_status tetrahedralize(kitchen *k) {
 
 static enf_status split(kitchen *k) {
     enf_complex *complex = &k->build->complex;
-    enf_status status =
-        enf_arrangement_make(&k->arrangement, &k->build->mesh, k->tets, k->options->threads, k->error);
+    k->share = 0.5;
+    enf_status status = enf_arrangement_make(&k->arrangement, &k->build->mesh, k->tets, &k->crew, k->error);
     memset(&k->tets, 0, sizeof k->tets); // taken, or freed
-    if (status != ENF_OK || !tell(k, 0.5)) return status;
-    status = enf_complex_split(complex, &k->arrangement, k->options->threads, &k->crossings, k->error);
+    if (status != ENF_OK) return status;
+    k->begun = k->share = 0.5;
+    status = enf_complex_split(complex, &k->arrangement, &k->crew, &k->crossings, k->error);
     if (status != ENF_OK) return status;
     say(k, "%d of %d tetrahedra cut; the others already carry their polygons", (int)complex->tetrahedra_cut,
         (int)complex->tetrahedron_count);
@@ -95,8 +99,7 @@ static enf_status split(kitchen *k) {
 
 static enf_status connect(kitchen *k) {
     enf_complex *complex = &k->build->complex;
-    enf_status status =
-        enf_complex_connect(complex, &k->arrangement, k->crossings, k->options->threads, k->error);
+    enf_status status = enf_complex_connect(complex, &k->arrangement, k->crossings, &k->crew, k->error);
     if (status != ENF_OK) return status;
     uint64_t all = complex->predicates_filter + complex->predicates_exact;
     say(k, "%d facets in %d pieces; %.3f %% of %.3g predicates needed exact arithmetic",
@@ -175,6 +178,8 @@ static enf_status portals(kitchen *k) {
 
 static enf_status run_stage(kitchen *k, const char *name, enf_status (*stage)(kitchen *)) {
     k->stage = name;
+    k->begun = 0;
+    k->share = 1;
     if (!tell(k, 0)) return enf_fail(k->error, ENF_NO_RESOURCES, "cancelled in stage '%s'", name);
     enf_stage_report *report = &k->build->stages[k->build->stage_count++];
     *report = (enf_stage_report){.name = name, .ran = true};
@@ -200,6 +205,7 @@ enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf
         {"portals", portals},
     };
     kitchen k = {.build = build, .options = options, .error = error};
+    k.crew = (enf_crew){.threads = options->threads > 0 ? options->threads : 1, .watch = tell, .user = &k};
     double start = enf_timer_now();
     enf_status status = ENF_OK;
     build->stage_count = 0;

@@ -386,7 +386,8 @@ static bool make_vertices(enf_complex *complex, const enf_arrangement *arrangeme
 }
 
 static bool run_blocks(connect_all *all, enf_arrangement *arrangement, const enf_crossing *crossings,
-                       int32_t block_count, int threads) {
+                       int32_t block_count, const enf_crew *crew, bool *stopped) {
+    int threads = crew->threads;
     for (int i = 0; i < threads; i++) {
         enf_geometry *geometry = &all->connectors[i].pool.geometry;
         *geometry = arrangement->geometry;
@@ -394,8 +395,8 @@ static bool run_blocks(connect_all *all, enf_arrangement *arrangement, const enf
         geometry->shared = crossings;
         geometry->shared_count = all->complex->vertex_count - all->complex->point_count;
     }
-    enf_parallel_for(threads, block_count, connect_job, all);
-    bool good = true;
+    *stopped = !enf_parallel_for(crew, block_count, connect_job, all);
+    bool good = !*stopped;
     for (int32_t b = 0; b < block_count; b++) good = good && !all->failed[b];
     for (int i = 0; i < threads; i++) {
         arrangement->geometry.decided_by_filter += all->connectors[i].pool.geometry.decided_by_filter;
@@ -423,8 +424,9 @@ static void free_blocks(connect_all *all, int32_t block_count, int threads) {
 }
 
 enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangement,
-                               const enf_crossing *crossings, int threads, enf_error *error) {
-    if (threads < 1) threads = 1;
+                               const enf_crossing *crossings, const enf_crew *crew, enf_error *error) {
+    int threads = crew->threads;
+    bool stopped = false;
     int32_t block_count = (complex->facet_count + BLOCK - 1) / BLOCK;
     int32_t *facet_face = NULL, *faces_by_facet = NULL, *face_cell = NULL;
     connect_all all = {.complex = complex,
@@ -436,7 +438,7 @@ enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangemen
     all.facet_face = facet_face;
     all.faces_by_facet = faces_by_facet;
     all.face_cell = face_cell;
-    good = good && run_blocks(&all, arrangement, crossings, block_count, threads) &&
+    good = good && run_blocks(&all, arrangement, crossings, block_count, crew, &stopped) &&
            join_pieces(complex, all.blocks, block_count, complex->vertex_count) &&
            join_sights(complex, all.blocks, block_count) &&
            make_vertices(complex, arrangement, crossings, all.blocks, block_count);
@@ -444,6 +446,7 @@ enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangemen
     free(facet_face);
     free(faces_by_facet);
     free(face_cell);
+    if (stopped) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
     if (!good) return enf_fail_memory(error, "the facets' pieces");
     complex->planes = arrangement->geometry.planes;
     complex->plane_count = arrangement->geometry.plane_count;

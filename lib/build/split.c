@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 512 }; ///< tetrahedra a job
+enum { BLOCK = 128 }; ///< tetrahedra a job
 
 typedef struct split_all {
     const enf_arrangement *arrangement;
@@ -207,13 +207,14 @@ static bool join(enf_complex *complex, enf_arrangement *arrangement, const enf_s
     return join_covers(complex, arrangement, blocks, block_count);
 }
 
-enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement, int threads,
+enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
                              enf_crossing **crossings, enf_error *error) {
     memset(complex, 0, sizeof *complex);
     *crossings = NULL;
     complex->points = arrangement->geometry.points;
     complex->point_count = arrangement->geometry.point_count;
-    if (threads < 1) threads = 1;
+    int threads = crew->threads;
+    bool stopped = false;
     int32_t block_count = (arrangement->tets.count + BLOCK - 1) / BLOCK;
     split_all all = {.arrangement = arrangement,
                      .blocks = enf_array_zeroed((size_t)block_count, sizeof *all.blocks),
@@ -223,7 +224,8 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     for (int i = 0; good && i < threads; i++)
         good = (all.splitters[i] = enf_splitter_new(arrangement)) != NULL;
     if (good) {
-        enf_parallel_for(threads, block_count, split_job, &all);
+        stopped = !enf_parallel_for(crew, block_count, split_job, &all);
+        good = !stopped;
         for (int32_t b = 0; b < block_count; b++) good = good && !all.failed[b];
         good = good && join(complex, arrangement, all.blocks, block_count, crossings);
     }
@@ -242,5 +244,6 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     free(*crossings);
     *crossings = NULL;
     enf_complex_free(complex);
-    return enf_fail_memory(error, "the fine cells");
+    return stopped ? enf_fail(error, ENF_NO_RESOURCES, "cancelled")
+                   : enf_fail_memory(error, "the fine cells");
 }
