@@ -273,18 +273,22 @@ static void add_loose_ceiling(enf_soup *soup, double gap) {
 static void a_crack_narrower_than_the_weld_distance_is_sealed(void **state) {
     (void)state;
     static const struct {
-        double gap, weld;
-        bool leak;
-    } cases[] = {{1e-8, 1e-6, false}, {1e-8, 0, true}, {1e-4, 1e-6, true}};
+        double gap, weld, plane_tolerance;
+        bool leak, sealed;
+    } cases[] = {{1e-8, 1e-6, 0, false, true},   // a crack
+                 {1e-8, 1e-6, -1, false, false}, // flattened away before it can be one
+                 {1e-8, 0, 0, true, false},      // without tolerances nothing is a crack
+                 {1e-4, 1e-6, -1, true, false}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         enf_build build = {0};
         add_loose_ceiling(&build.soup, cases[i].gap);
         enf_build_options options = pipeline_options();
         options.clean.weld = cases[i].weld;
+        options.clean.plane_tolerance = cases[i].plane_tolerance;
         pipeline_build(&build, &options);
         pipeline_check(&build);
         assert_int_equal(build.regions.leak, cases[i].leak);
-        assert_int_equal(build.regions.sealed > 0, !cases[i].leak);
+        assert_int_equal(build.regions.sealed > 0, cases[i].sealed);
         if (!cases[i].leak) assert_near(kept_volume(&build), 512, 1e-5);
         enf_build_free(&build);
     }

@@ -8,7 +8,7 @@
 //   4 weld       points within `weld` of an earlier one, in grid order, join it (default 1e-9 of the diagonal
 //   of the
 //                points' box; weld.c)
-//   5 flatten    coordinates within `plane_tolerance` share one value, per axis (default: off)
+//   5 flatten    coordinates within `plane_tolerance` share one value, per axis (default a tenth of `weld`)
 //   6 polygons   repeated and collinear corners go; what is planar and convex stays whole, the rest becomes
 //                triangles (ring.c, triangulate.c)
 //   7 duplicates of polygons with the same corners in the same order one stays
@@ -29,7 +29,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEFAULT_WELD 1e-9        ///< of the diagonal of the bounding box
+#define DEFAULT_WELD 1e-9   ///< of the diagonal of the bounding box
+#define DEFAULT_FLATTEN 0.1 ///< of the welding distance: a point moved by it opens no gap that is not a crack
 #define LARGEST_COORDINATE 1e100 ///< volumes and their sums stay finite
 
 enum { CUTS, IS_DETAIL, IS_EXCLUDED };
@@ -225,7 +226,8 @@ static double choose_tolerances(cleaner *c, const enf_site *sites, size_t count)
     enf_mesh *mesh = c->mesh;
     double distance = DEFAULT_WELD * diagonal(sites, count);
     mesh->weld = c->options->weld < 0 ? distance * mesh->frame.step : c->options->weld;
-    mesh->plane_tolerance = c->options->plane_tolerance < 0 ? 0 : c->options->plane_tolerance;
+    mesh->plane_tolerance =
+        c->options->plane_tolerance < 0 ? DEFAULT_FLATTEN * mesh->weld : c->options->plane_tolerance;
     return c->options->weld < 0 ? distance : c->options->weld / mesh->frame.step;
 }
 

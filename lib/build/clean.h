@@ -7,7 +7,7 @@
 
 typedef struct enf_clean_options {
     double weld; ///< world units; corners closer than this become one; < 0: default; 0: only equal ones
-    double plane_tolerance;     ///< world units; see clean.c; < 0: default (off); 0: off
+    double plane_tolerance;     ///< world units; see clean.c; < 0: a tenth of weld; 0: off
     const char *const *exclude; ///< globs (fnmatch) over group names; matching polygons are left out
     size_t exclude_count;
     const char *const *detail; ///< globs over group names; matching polygons are drawn but do not cut
