@@ -42,14 +42,15 @@ extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const
         {"--detail",  0,      CLI_TEXTS,                                                                       \
          &(s).detail, "GLOB", "groups that are drawn but do not cut; may be repeated",                         \
          NULL,        false},                                                                                  \
-        {"--weld", 0,    CLI_LENGTH, &(s).weld, "D", "corners closer than D world units become one",           \
-         NULL,     false},                                                                                     \
+        {"--weld",  0,    CLI_LENGTH,                                                                          \
+         &(s).weld, "D",  "corners closer than D become one; default 1e-9 of the diagonal",                    \
+         NULL,      false},                                                                                    \
         {"--plane-tolerance",                                                                                  \
          0,                                                                                                    \
          CLI_LENGTH,                                                                                           \
          &(s).plane_tolerance,                                                                                 \
          "D",                                                                                                  \
-         "coordinates within D world units are made equal; default 0",                                         \
+         "coordinates within D become equal; default: a tenth of --weld",                                      \
          NULL,                                                                                                 \
          false},                                                                                               \
     {                                                                                                          \
