@@ -30,8 +30,8 @@ typedef struct enf_regions {
 
     bool leak; ///< a spawn's region reaches the outside
     int32_t leak_spawn;
-    double leak_width;   ///< of the narrowest opening on the way, grid steps
-    double leak_neck[3]; ///< and its middle
+    double leak_width;        ///< of the narrowest opening on the way, grid steps
+    double leak_neck[3];      ///< and its middle
     int32_t leak_point_count; ///< polyline from the spawn to the outside, grid steps
     double (*leak_points)[3];
 } enf_regions;
