@@ -6,6 +6,7 @@
 #include "build/check.h"
 #include "build/write.h"
 
+#include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -39,6 +40,24 @@ const char *pipeline_shared(const char *name) {
     }
     print_message("%s is not here; set ENFILADE_SHARED to the folder that has it\n", name);
     return NULL;
+}
+
+void pipeline_visit_levels(void (*visit)(const char *path, const char *name)) {
+    const char *shared = pipeline_shared("quake/obj");
+    if (!shared) skip();
+    char folder[1024], path[2048];
+    snprintf(folder, sizeof folder, "%s", shared);
+    struct dirent **entries;
+    int count = scandir(folder, &entries, NULL, alphasort);
+    assert_true(count >= 0);
+    for (int i = 0; i < count; i++) {
+        if (strstr(entries[i]->d_name, ".obj.gz")) {
+            snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
+            visit(path, entries[i]->d_name);
+        }
+        free(entries[i]);
+    }
+    free(entries);
 }
 
 static uint64_t next_random(uint64_t *seed) { // splitmix64

@@ -16,6 +16,10 @@ void pipeline_read_model(enf_soup *soup, const char *name);
 /// call.
 const char *pipeline_shared(const char *name);
 
+/// Calls visit(path, file name) for every shared Quake level, in order of names. Skips the test if they are
+/// absent.
+void pipeline_visit_levels(void (*visit)(const char *path, const char *name));
+
 /// The same soup in another order: points, polygons and each polygon's first corner shuffled. Groups, normals
 /// and texture coordinates are dropped.
 void pipeline_shuffle(const enf_soup *from, enf_soup *to, uint64_t seed);

@@ -3,11 +3,9 @@
 // has a hole, and has the same regions whichever tetrahedralizer is used.
 #include "pipeline_fixture.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,21 +81,7 @@ static void check_level(const char *path, const char *name) {
 
 static void levels_compile_and_both_tetrahedralizers_agree(void **state) {
     (void)state;
-    const char *shared = pipeline_shared("quake/obj");
-    if (!shared) skip();
-    char folder[1024], path[2048];
-    snprintf(folder, sizeof folder, "%s", shared);
-    struct dirent **entries;
-    int count = scandir(folder, &entries, NULL, alphasort);
-    assert_true(count >= 0);
-    for (int i = 0; i < count; i++) {
-        if (strstr(entries[i]->d_name, ".obj.gz")) {
-            snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-            check_level(path, entries[i]->d_name);
-        }
-        free(entries[i]);
-    }
-    free(entries);
+    pipeline_visit_levels(check_level);
 }
 
 int main(void) {

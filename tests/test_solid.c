@@ -9,7 +9,6 @@
 #include "build/write.h"
 #include "format/locate.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -163,29 +162,19 @@ static void check_kinds(const char *path, const char *name, const brushes *all, 
     enf_build_free(&build);
 }
 
+static void check_level(const char *path, const char *name) {
+    brushes all = {0};
+    read_brushes(&all, path);
+    check_kinds(path, name, &all, true);
+    check_kinds(path, name, &all, false);
+    free(all.planes);
+    free(all.list);
+    free(all.points);
+}
+
 static void rock_is_what_brushes_hold(void **state) {
     (void)state;
-    const char *shared = pipeline_shared("quake/obj");
-    if (!shared) skip();
-    char folder[1024], path[2048];
-    snprintf(folder, sizeof folder, "%s", shared);
-    struct dirent **entries;
-    int count = scandir(folder, &entries, NULL, alphasort);
-    assert_true(count >= 0);
-    for (int i = 0; i < count; i++) {
-        if (strstr(entries[i]->d_name, ".obj.gz")) {
-            brushes all = {0};
-            snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-            read_brushes(&all, path);
-            check_kinds(path, entries[i]->d_name, &all, true);
-            check_kinds(path, entries[i]->d_name, &all, false);
-            free(all.planes);
-            free(all.list);
-            free(all.points);
-        }
-        free(entries[i]);
-    }
-    free(entries);
+    pipeline_visit_levels(check_level);
 }
 
 int main(void) {
