@@ -18,29 +18,6 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-typedef struct saved {
-    fixture fixture;
-    unsigned char *bytes;
-    size_t size;
-} saved;
-
-static int set_up(void **state) {
-    saved *s = calloc(1, sizeof *s);
-    if (!s) return -1;
-    fixture_make(&s->fixture, 2, NULL);
-    s->bytes = fixture_save(&s->fixture, &s->size);
-    *state = s;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    saved *s = *state;
-    fixture_free(&s->fixture);
-    free(s->bytes);
-    free(s);
-    return 0;
-}
-
 static uint64_t next_random(uint64_t *seed) { // splitmix64
     uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
     z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -71,7 +48,7 @@ static enf_file_section *section_of(unsigned char *file, const char *tag) {
 }
 
 static void every_array_comes_back_as_it_was(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_image image;
     enf_file_view view;
     enf_error error = {0};
@@ -100,7 +77,7 @@ static void every_array_comes_back_as_it_was(void **state) {
 }
 
 static void names_and_options_come_back(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_world *world;
     assert_int_equal(enf_world_open_memory(&world, s->bytes, s->size, NULL, NULL), ENF_OK);
     enf_world_info info;
@@ -113,7 +90,7 @@ static void names_and_options_come_back(void **state) {
 }
 
 static void the_same_world_gives_the_same_bytes(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     size_t size;
     fixture again;
     fixture_make(&again, 2, NULL);
@@ -127,7 +104,7 @@ static void the_same_world_gives_the_same_bytes(void **state) {
 }
 
 static void sections_are_aligned_and_padding_is_zero(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     const enf_file_header *header = (const void *)s->bytes;
     const enf_file_section *sections = (const void *)(s->bytes + header->table_offset);
     uint64_t end = header->table_offset + header->section_count * sizeof *sections;
@@ -140,7 +117,7 @@ static void sections_are_aligned_and_padding_is_zero(void **state) {
 }
 
 static void neighbours_share_the_face_between_them(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_file_view view;
     assert_int_equal(enf_file_read(&view, s->bytes, s->size, false, NULL), ENF_OK);
     int hull = 0;
@@ -203,7 +180,7 @@ static void portals_face_the_cell_they_lead_from(void **state) {
 }
 
 static void triangles_keep_the_inputs_corners_and_cells_list_what_they_see(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_file_view view;
     assert_int_equal(enf_file_read(&view, s->bytes, s->size, false, NULL), ENF_OK);
     assert_int_equal(view.triangle_count, 8 + 2); // the wall, the detail
@@ -231,7 +208,7 @@ static void triangles_keep_the_inputs_corners_and_cells_list_what_they_see(void 
 
 /// Bytes of padding between sections mean nothing; any other change must be noticed.
 static void every_changed_byte_is_noticed(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_file_view view;
     assert_int_equal(enf_file_read(&view, s->bytes, s->size, false, NULL), ENF_OK);
     unsigned char *copy = malloc(s->size), *covered = calloc(s->size, 1);
@@ -258,7 +235,7 @@ static void every_changed_byte_is_noticed(void **state) {
 }
 
 static void every_truncation_is_refused(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_error error;
     for (size_t size = 0; size < s->size; size += size < 4096 ? 1 : 37)
         assert_int_equal(open_copy(s->bytes, size, &error), ENF_BAD_INPUT);
@@ -266,7 +243,7 @@ static void every_truncation_is_refused(void **state) {
 }
 
 static void truncation_says_so(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_error error;
     assert_int_equal(open_copy(s->bytes, s->size - 1, &error), ENF_BAD_INPUT);
     assert_non_null(strstr(error.text, "incomplete"));
@@ -275,7 +252,7 @@ static void truncation_says_so(void **state) {
 }
 
 static void newer_minor_versions_open_and_newer_major_ones_do_not(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_file_header *header = (void *)s->bytes;
     enf_error error;
     header->minor = 9;
@@ -291,7 +268,7 @@ static void newer_minor_versions_open_and_newer_major_ones_do_not(void **state) 
 }
 
 static void unknown_sections_are_skipped_unless_they_must_be_known(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     enf_error error;
     unsigned char *copy = malloc(s->size);
     assert_non_null(copy);
@@ -316,7 +293,7 @@ static void unknown_sections_are_skipped_unless_they_must_be_known(void **state)
 }
 
 static void hostile_table_entries_are_refused(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     const uint64_t values[] = {1,
                                8,
                                15,
@@ -371,7 +348,7 @@ static enf_status read_with_table(unsigned char *file, size_t size) {
 }
 
 static void sections_that_overlap_or_stick_out_are_refused(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     unsigned char *copy = malloc(s->size);
     assert_non_null(copy);
     memcpy(copy, s->bytes, s->size);
@@ -388,7 +365,7 @@ static void sections_that_overlap_or_stick_out_are_refused(void **state) {
 /// Random words of random sections become numbers that hurt, with correct checksums. The world opens or not;
 /// if it does, everything in it can be used.
 static void hostile_numbers_never_crash(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     uint64_t seed = 20261122;
     print_message("seed %llu\n", (unsigned long long)seed);
     unsigned char *copy = malloc(s->size);
@@ -430,7 +407,7 @@ static void hostile_numbers_never_crash(void **state) {
     free(copy);
 }
 
-static void expect_refusal(saved *s, const char *tag, size_t offset, int32_t value) {
+static void expect_refusal(fixture_saved *s, const char *tag, size_t offset, int32_t value) {
     unsigned char *copy = malloc(s->size);
     assert_non_null(copy);
     memcpy(copy, s->bytes, s->size);
@@ -443,7 +420,7 @@ static void expect_refusal(saved *s, const char *tag, size_t offset, int32_t val
 }
 
 static void each_kind_of_bad_index_is_named(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     expect_refusal(s, "TET", 0, 27);
     expect_refusal(s, "TET", 0, -1);
     expect_refusal(s, "TETNEXT", 4, -2);
@@ -488,7 +465,7 @@ static void unreadable_paths_are_told_from_bad_files(void **state) {
 }
 
 static void misaligned_memory_is_refused(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     unsigned char *copy = malloc(s->size + 1);
     assert_non_null(copy);
     memcpy(copy + 1, s->bytes, s->size);
@@ -518,5 +495,5 @@ int main(void) {
         cmocka_unit_test(unreadable_paths_are_told_from_bad_files),
         cmocka_unit_test(misaligned_memory_is_refused),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
 }

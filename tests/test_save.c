@@ -16,29 +16,6 @@
 
 #include <cmocka.h>
 
-typedef struct saved {
-    fixture fixture;
-    unsigned char *bytes;
-    size_t size;
-} saved;
-
-static int set_up(void **state) {
-    saved *s = calloc(1, sizeof *s);
-    if (!s) return -1;
-    fixture_make(&s->fixture, 2, NULL);
-    s->bytes = fixture_save(&s->fixture, &s->size);
-    *state = s;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    saved *s = *state;
-    fixture_free(&s->fixture);
-    free(s->bytes);
-    free(s);
-    return 0;
-}
-
 static size_t files_in_here(void) {
     FILE *pipe = popen("ls -A | wc -l", "r");
     size_t count = 0;
@@ -49,7 +26,7 @@ static size_t files_in_here(void) {
 }
 
 static void failing_to_write_leaves_nothing_behind(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     char folder[] = "format-XXXXXX";
     assert_non_null(mkdtemp(folder));
     assert_int_equal(chdir(folder), 0);
@@ -75,7 +52,7 @@ static void failing_to_write_leaves_nothing_behind(void **state) {
 }
 
 static void a_full_disk_leaves_the_old_file(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     char path[] = "full-XXXXXX";
     int file = mkstemp(path);
     assert_true(file >= 0);
@@ -101,7 +78,7 @@ static void a_full_disk_leaves_the_old_file(void **state) {
 }
 
 static void an_old_file_is_replaced_as_a_whole(void **state) {
-    saved *s = *state;
+    fixture_saved *s = *state;
     char folder[] = "format-XXXXXX";
     assert_non_null(mkdtemp(folder));
     assert_int_equal(chdir(folder), 0);
@@ -143,5 +120,5 @@ int main(void) {
         cmocka_unit_test(an_old_file_is_replaced_as_a_whole),
         cmocka_unit_test(a_broken_build_is_not_written),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, fixture_set_up, fixture_tear_down);
 }

@@ -389,3 +389,20 @@ void fixture_fix_checksums(unsigned char *file) {
     header->table_checksum = enf_hash64(sections, header->section_count * sizeof *sections, 0);
     header->header_checksum = enf_hash64(header, offsetof(enf_file_header, header_checksum), 0);
 }
+
+int fixture_set_up(void **state) {
+    fixture_saved *s = calloc(1, sizeof *s);
+    if (!s) return -1;
+    fixture_make(&s->fixture, 2, NULL);
+    s->bytes = fixture_save(&s->fixture, &s->size);
+    *state = s;
+    return 0;
+}
+
+int fixture_tear_down(void **state) {
+    fixture_saved *s = *state;
+    fixture_free(&s->fixture);
+    free(s->bytes);
+    free(s);
+    return 0;
+}

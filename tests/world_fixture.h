@@ -25,6 +25,16 @@ void fixture_free(fixture *fixture);
 /// The saved file in memory from malloc.
 unsigned char *fixture_save(const fixture *fixture, size_t *size);
 
+/// A small world and its file, as cmocka's group set-up and tear-down.
+typedef struct fixture_saved {
+    fixture fixture;
+    unsigned char *bytes;
+    size_t size;
+} fixture_saved;
+
+int fixture_set_up(void **state);
+int fixture_tear_down(void **state);
+
 /// Reads a whole file (malloc).
 unsigned char *fixture_read_file(const char *path, size_t *size);
 
