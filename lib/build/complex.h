@@ -10,10 +10,14 @@
 //   loop    a convex polygon on a plane: corners (vertex, plane of the edge that leaves it),
 //   counter-clockwise
 //           seen from the plane's front (positive) side
-//   facet   a flat convex area that separates fine cells: a tetrahedron's face, or the cut made by an input
-//   polygon face    a fine cell's share of a facet (one loop);  faces of one facet's two sides need not match
-//   piece   the overlap of a back face and a front face of a facet, cut up further into open and occluded
-//   parts cover   the share of an input polygon that lies on a facet
+//   facet   a flat convex area with one fine cell on each side (or one, and the outside of the hull): a share
+//   of a
+//           tetrahedron's face, or of the cut made by an input polygon. A cell may have several in one plane.
+//   cover   the share of an input polygon that lies on a facet
+//   piece   a part of a facet, open or occluded: most facets are one piece
+//
+// Facets are shared by the two cells, so a loop is kept once; a cover or piece that is the whole facet has no
+// corners of its own (see enf_complex_piece).
 #ifndef ENF_BUILD_COMPLEX_H
 #define ENF_BUILD_COMPLEX_H
 
@@ -56,7 +60,9 @@ typedef struct enf_complex {
     int32_t (*vertex_planes)[3];  ///< vertex_count entries; -1 -1 -1 for points
     double (*vertex_position)[3]; ///< grid steps; rounded for crossings
 
-    // Tetrahedra and, where one was cut, a tree of cuts: the exact way to find a point's cell.
+    // Tetrahedra and, where one was cut, a tree of cuts: the exact way to find a point's cell. Cells were
+    // joined where that made one convex cell of two, across the tetrahedra's faces too: leaves may share a
+    // cell.
     int32_t tetrahedron_count;
     int32_t (*tetrahedra)[4];  ///< point numbers, positively oriented
     int32_t *tetrahedron_root; ///< >= 0: a node; < 0: the fine cell -1 - root
@@ -64,47 +70,45 @@ typedef struct enf_complex {
     size_t node_capacity;
     int32_t *node_plane;
     int32_t (*node_child)[2]; ///< behind, in front of the plane; >= 0 node, < 0 fine cell -1 - child
-    int32_t *node_facet;      ///< the facet that the cut made
 
     int32_t cell_count;
-    size_t cell_capacity;
-    int32_t *cell_tetrahedron;
-    int32_t *cell_face; ///< cell_count + 1 offsets: cell c has faces cell_face[c] .. cell_face[c+1]-1
-
-    // Faces. face_side 0: the cell lies behind the facet's plane; 1: in front of it.
-    enf_loops faces;
-    int32_t *face_facet;
-    uint8_t *face_side;
-    size_t face_capacity;
+    int32_t *cell_facet;  ///< cell_count + 1 offsets into cell_facets
+    int32_t *cell_facets; ///< the facets around each cell, ascending; which side: see facet_cell
 
     int32_t facet_count;
-    size_t facet_capacity;
+    enf_loops facets; ///< strictly convex; neighbours in one cell may share only part of an edge
     int32_t *facet_plane;
-    bool *facet_hull;     ///< on the convex hull: one side only
-    int32_t *facet_cover; ///< facet_count + 1 offsets into covers
-    int32_t *facet_piece; ///< facet_count + 1 offsets into pieces
+    int32_t (*facet_cell)[2]; ///< the cell behind, the cell in front; -1: outside the hull
+    int32_t *facet_cover;     ///< facet_count + 1 offsets into covers
+    int32_t *facet_piece;     ///< facet_count + 1 offsets into pieces
 
-    enf_loops covers;
-    int32_t *cover_polygon; ///< mesh polygon; facing: see enf_complex_cover_front
+    enf_loops covers;       ///< no corners: the whole facet
+    int32_t *cover_polygon; ///< mesh polygon
     uint8_t *cover_side;    ///< the side of the facet that sees the polygon's front: 0 behind, 1 in front
 
-    enf_loops pieces;
-    int32_t (*piece_face)[2]; ///< the face behind, the face in front; -1: outside the hull
-    int32_t *piece_cover;     ///< a cover that the whole piece lies in, ENF_PIECE_OPEN or ENF_PIECE_SEALED
-    size_t piece_capacity;
+    enf_loops pieces;     ///< no corners: the whole facet
+    int32_t *piece_facet; ///< ascending
+    int32_t *piece_cover; ///< a cover that the whole piece lies in, ENF_PIECE_OPEN or ENF_PIECE_SEALED
 
     int64_t *seen_offset; ///< cell_count + 1 offsets
     int32_t *seen;        ///< mesh polygons whose front a fine cell sees, ascending
 
     // Work done and work skipped, for the report.
     int32_t tetrahedra_cut; ///< tetrahedra that some polygon crosses; the others are one fine cell each
+    int32_t cells_joined;   ///< how many fewer fine cells there are than leaves
     uint64_t predicates_filter, predicates_exact; ///< decided in floating point / by exact arithmetic
 } enf_complex;
 
 void enf_complex_free(enf_complex *complex);
 
-/// The cell of every face (face_count entries; free() it), or null without memory.
-int32_t *enf_complex_face_cells(const enf_complex *complex);
+/// The corners of a cover or piece: its own, or its facet's. *count receives their number.
+const enf_corner *enf_complex_cover(const enf_complex *complex, int32_t cover, int32_t facet, int32_t *count);
+const enf_corner *enf_complex_piece(const enf_complex *complex, int32_t piece, int32_t *count);
+
+/// The cells behind and in front of a piece; -1: outside the hull.
+static inline const int32_t *enf_complex_piece_cells(const enf_complex *complex, int32_t piece) {
+    return complex->facet_cell[complex->piece_facet[piece]];
+}
 
 /// Volume in grid steps cubed, from rounded coordinates.
 double enf_complex_cell_volume(const enf_complex *complex, int32_t cell);
@@ -118,7 +122,7 @@ typedef struct enf_body_size {
 /// nothing of its volume) the surface is less than `thin` times the length of the bounding box.
 bool enf_body_is_hairline(const enf_body_size *body, double thin);
 
-/// Adds a fine cell, with all its faces as surface, to a body that was {.low = +inf, .high = -inf} or had
+/// Adds a fine cell, with all its facets as surface, to a body that was {.low = +inf, .high = -inf} or had
 /// others before.
 void enf_complex_measure_cell(const enf_complex *complex, int32_t cell, enf_body_size *body);
 
@@ -129,8 +133,7 @@ void enf_complex_piece_area(const enf_complex *complex, int32_t piece, double ar
 /// coordinates, grid steps.
 double enf_complex_piece_width(const enf_complex *complex, int32_t piece);
 
-/// The mean of a loop's corners: a point inside it, up to rounding.
-void enf_complex_loop_centre(const enf_complex *complex, const enf_loops *loops, int32_t loop,
-                             double centre[3]);
+/// The mean of a piece's corners: a point inside it, up to rounding.
+void enf_complex_piece_centre(const enf_complex *complex, int32_t piece, double centre[3]);
 
 #endif
