@@ -1,92 +1,193 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A facet is flat, so this is work in two dimensions: its back faces and its front faces tile it in two ways,
-// the overlaps of the two tilings are its pieces, and from each piece the covers are taken away one after the
-// other (the thesis 4.2.2), so that covers that overlap each other count once. All cuts are by planes, hence
-// exact.
+// The subdivision, with what covers its facets, becomes the fine complex: numbers without gaps, loops without
+// corners on straight lines, vertices that somebody uses. Overlaps of coplanar polygons are resolved here, in the
+// plane: they cut pieces out of a facet, not cells.
 #include "build/connect.h"
 
 #include "base/array.h"
-#include "base/parallel.h"
-#include "build/loop.h"
+#include "build/cover.h"
+#include "build/join.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK = 1024 }; ///< facets a job
-
-typedef struct sight {
-    int32_t cell, polygon;
-} sight;
-
-typedef struct connect_block {
-    enf_loops pieces;
-    int32_t (*piece_face)[2];
-    int32_t *piece_cover;
-    size_t face_capacity, cover_capacity;
-    int32_t piece_count[BLOCK]; ///< per facet of the block
-    enf_crossing *crossings;    ///< new ones
-    size_t crossing_count, crossing_capacity;
-    sight *sights;
-    size_t sight_count, sight_capacity;
-} connect_block;
-
 typedef struct connector {
-    enf_pool pool;
-    enf_loop *open, *rest; ///< what is left of a piece, before and after the next cover
+    enf_complex *complex;
+    const enf_arrangement *arrangement;
+    enf_subdivision *space;
+    enf_covers covers;
+    enf_pool pool; ///< has the geometry while we are at work
+    int32_t *cell_number, *facet_number; ///< new numbers; -1: gone
+    int32_t *cover_order;                ///< covers by facet
+    enf_loop *open, *rest;               ///< of the facet at hand: what no cover has taken yet
     size_t open_count, open_capacity, rest_count, rest_capacity;
+    size_t piece_capacity, piece_facet_capacity;
 } connector;
 
-typedef struct connect_all {
-    const enf_complex *complex;
-    const int32_t *facet_face; ///< facet_count + 1 offsets into faces_by_facet; faces behind come first
-    const int32_t *faces_by_facet;
-    const int32_t *face_cell;
-    connect_block *blocks;
-    connector *connectors;
-    bool *failed; ///< per block
-} connect_all;
+// ---------------------------------------------------------------------------------------------- numbers
 
-// ---------------------------------------------------------------------------------------------- results
+/// Joins cells, and numbers what is left in the old order.
+static bool number_cells(connector *c) {
+    enf_subdivision *space = c->space;
+    size_t cells = space->cell_count, facets = space->facet_count;
+    int32_t *into = c->cell_number = enf_array_new(cells, sizeof *into);
+    c->facet_number = enf_array_new(facets, sizeof *c->facet_number);
+    if (!into || !c->facet_number) return false;
+    int32_t joined = enf_subdivision_join(space, c->covers.covered, into);
+    if (joined < 0) return false;
+    c->complex->cells_joined = joined;
+    int32_t count = 0;
+    for (size_t i = 0; i < facets; i++) c->facet_number[i] = space->facets[i].first >= 0 ? count++ : -1;
+    c->complex->facet_count = count;
+    // A cell that went into another may have the lower number: first those that stay.
+    count = 0;
+    for (size_t i = 0; i < cells; i++) {
+        if (into[i] == (int32_t)i) into[i] = -1 - count++;
+    }
+    for (size_t i = 0; i < cells; i++) {
+        if (into[i] >= 0) into[i] = into[into[i]]; // roots hold -1 - number already
+    }
+    for (size_t i = 0; i < cells; i++) into[i] = -1 - into[i];
+    c->complex->cell_count = count;
+    return true;
+}
 
-static bool add_piece(connector *connector, connect_block *block, const enf_corner *corners, int32_t count,
-                      const int32_t face[2], int32_t cover) {
-    const enf_geometry *geometry = &connector->pool.geometry;
-    size_t pieces = (size_t)block->pieces.count + 1;
-    if (!enf_array_reserve(block->piece_face, block->face_capacity, pieces) ||
-        !enf_array_reserve(block->piece_cover, block->cover_capacity, pieces) ||
-        !enf_loops_append(&block->pieces, corners, count)) {
+static void renumber_tree(connector *c) {
+    enf_subdivision *space = c->space;
+    enf_complex *complex = c->complex;
+    for (int32_t t = 0; t < space->tetrahedron_count; t++) {
+        int32_t *root = &space->tetrahedron_root[t];
+        if (*root < 0) *root = -1 - c->cell_number[-1 - *root];
+    }
+    for (size_t n = 0; n < space->node_count; n++) {
+        for (int k = 0; k < 2; k++) {
+            int32_t *child = &space->node_child[n][k];
+            if (*child < 0) *child = -1 - c->cell_number[-1 - *child];
+        }
+    }
+    complex->tetrahedron_root = space->tetrahedron_root;
+    complex->node_child = space->node_child;
+    complex->node_count = (int32_t)space->node_count;
+    space->tetrahedron_root = NULL;
+    space->node_child = NULL;
+}
+
+// ---------------------------------------------------------------------------------------------- facets
+
+static bool make_facets(connector *c) {
+    enf_complex *complex = c->complex;
+    const enf_subdivision *space = c->space;
+    size_t count = (size_t)complex->facet_count, corners = 0;
+    for (size_t i = 0; i < space->facet_count; i++) {
+        int32_t first = space->facets[i].first, h = first;
+        if (first < 0) continue;
+        do {
+            int32_t next = space->halves[h].next;
+            corners += space->halves[h].edge_plane != space->halves[next].edge_plane;
+            h = next;
+        } while (h != first);
+    }
+    complex->facets.offset = enf_array_new(count + 1, sizeof *complex->facets.offset);
+    complex->facets.corners = enf_array_new(corners, sizeof *complex->facets.corners);
+    complex->facet_plane = enf_array_new(count, sizeof *complex->facet_plane);
+    complex->facet_cell = enf_array_new(count, sizeof *complex->facet_cell);
+    if (!complex->facets.offset || !complex->facets.corners || !complex->facet_plane || !complex->facet_cell)
+        return false;
+    for (size_t i = 0; i < space->facet_count; i++) {
+        int32_t f = c->facet_number[i];
+        if (f < 0) continue;
+        c->pool.corner_count = 0;
+        enf_loop loop = enf_facet_loop(space, (int32_t)i, &c->pool);
+        if (c->pool.failed) return false;
+        complex->facets.offset[f] = (int64_t)complex->facets.corner_count;
+        memcpy(complex->facets.corners + complex->facets.corner_count, c->pool.corners,
+               (size_t)loop.count * sizeof *c->pool.corners);
+        complex->facets.corner_count += (size_t)loop.count;
+        complex->facet_plane[f] = loop.plane;
+        for (int side = 0; side < 2; side++) {
+            int32_t cell = space->facets[i].cell[side];
+            complex->facet_cell[f][side] = cell < 0 ? -1 : c->cell_number[cell];
+        }
+    }
+    complex->facets.count = complex->facet_count;
+    complex->facets.offset[count] = (int64_t)complex->facets.corner_count;
+    return true;
+}
+
+static bool make_cells(enf_complex *complex) {
+    size_t cells = (size_t)complex->cell_count;
+    int32_t *next = complex->cell_facet = enf_array_zeroed(cells + 2, sizeof *next);
+    complex->cell_facets = enf_array_new(2 * (size_t)complex->facet_count, sizeof *complex->cell_facets);
+    if (!next || !complex->cell_facets) return false;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int32_t f = 0; f < complex->facet_count; f++) {
+            for (int side = 0; side < 2; side++) {
+                int32_t cell = complex->facet_cell[f][side];
+                if (cell < 0) continue;
+                if (pass == 0) {
+                    next[cell + 2]++;
+                } else {
+                    complex->cell_facets[next[cell + 1]++] = f;
+                }
+            }
+        }
+        for (size_t i = 0; pass == 0 && i < cells; i++) next[i + 2] += next[i + 1];
+    }
+    return true;
+}
+
+// ---------------------------------------------------------------------------------------------- covers
+
+/// Covers by facet, on one facet in the order they were found.
+static bool make_covers(connector *c) {
+    enf_complex *complex = c->complex;
+    const enf_covers *found = &c->covers;
+    size_t count = found->count, facets = (size_t)complex->facet_count;
+    int32_t *next = complex->facet_cover = enf_array_zeroed(facets + 2, sizeof *next);
+    int32_t *order = c->cover_order = enf_array_new(count, sizeof *order);
+    complex->covers.offset = enf_array_new(count + 1, sizeof *complex->covers.offset);
+    complex->covers.corners = enf_array_new(found->loops.corner_count, sizeof *complex->covers.corners);
+    complex->cover_polygon = enf_array_new(count, sizeof *complex->cover_polygon);
+    complex->cover_side = enf_array_new(count, sizeof *complex->cover_side);
+    if (!next || !order || !complex->covers.offset || !complex->covers.corners || !complex->cover_polygon ||
+        !complex->cover_side) {
         return false;
     }
-    // Own crossings are numbered anew in the block; the pool's are dropped with the facet.
-    enf_corner *added = block->pieces.corners + block->pieces.offset[block->pieces.count - 1];
-    int32_t own = geometry->point_count + geometry->shared_count;
-    for (int32_t i = 0; i < count; i++) {
-        if (added[i].vertex < own) continue;
-        if (!enf_array_reserve(block->crossings, block->crossing_capacity, block->crossing_count + 1))
-            return false;
-        block->crossings[block->crossing_count] = geometry->crossings[added[i].vertex - own];
-        added[i].vertex = own + (int32_t)block->crossing_count++;
+    for (size_t i = 0; i < count; i++) next[c->facet_number[found->covers[i].facet] + 2]++;
+    for (size_t f = 0; f < facets; f++) next[f + 2] += next[f + 1];
+    for (size_t i = 0; i < count; i++)
+        order[next[c->facet_number[found->covers[i].facet] + 1]++] = (int32_t)i;
+    for (size_t i = 0; i < count; i++) {
+        const enf_cover *cover = &found->covers[order[i]];
+        complex->covers.offset[i] = (int64_t)complex->covers.corner_count;
+        complex->cover_polygon[i] = cover->polygon;
+        complex->cover_side[i] = (uint8_t)cover->side;
+        if (cover->loop < 0) continue;
+        int64_t begin = found->loops.offset[cover->loop];
+        size_t corners = (size_t)(found->loops.offset[cover->loop + 1] - begin);
+        memcpy(complex->covers.corners + complex->covers.corner_count, found->loops.corners + begin,
+               corners * sizeof *complex->covers.corners);
+        complex->covers.corner_count += corners;
     }
-    block->piece_face[pieces - 1][0] = face[0];
-    block->piece_face[pieces - 1][1] = face[1];
-    block->piece_cover[pieces - 1] = cover;
+    complex->covers.count = (int32_t)count;
+    complex->covers.offset[count] = (int64_t)complex->covers.corner_count;
     return true;
 }
 
-static bool add_sight(const connect_all *all, connect_block *block, const int32_t face[2], int32_t cover) {
-    int32_t seeing = face[all->complex->cover_side[cover]];
-    if (seeing < 0) return true;
-    if (!enf_array_reserve(block->sights, block->sight_capacity, block->sight_count + 1)) return false;
-    block->sights[block->sight_count++] = (sight){all->face_cell[seeing], all->complex->cover_polygon[cover]};
+// ---------------------------------------------------------------------------------------------- pieces
+
+/// A piece with corners, or (count = 0) one that is the whole facet.
+static bool add_piece(connector *c, int32_t facet, const enf_corner *corners, int32_t count, int32_t cover) {
+    enf_complex *complex = c->complex;
+    size_t pieces = (size_t)complex->pieces.count + 1;
+    if (!enf_array_reserve(complex->piece_facet, c->piece_facet_capacity, pieces) ||
+        !enf_array_reserve(complex->piece_cover, c->piece_capacity, pieces) ||
+        !enf_loops_append(&complex->pieces, corners, count)) {
+        return false;
+    }
+    complex->piece_facet[pieces - 1] = facet;
+    complex->piece_cover[pieces - 1] = cover;
     return true;
-}
-
-// ---------------------------------------------------------------------------------------------- one facet
-
-static enf_loop copy_loop(connector *connector, const enf_loops *loops, int32_t index, int32_t plane) {
-    const enf_corner *corners = loops->corners + loops->offset[index];
-    return enf_pool_loop(&connector->pool, plane, corners,
-                         (int32_t)(loops->offset[index + 1] - loops->offset[index]));
 }
 
 static bool push_loop(enf_loop **list, size_t *count, size_t *capacity, enf_loop loop) {
@@ -97,13 +198,12 @@ static bool push_loop(enf_loop **list, size_t *count, size_t *capacity, enf_loop
 
 /// Splits every open loop by a cover: what lies inside becomes an occluded piece, what lies outside stays
 /// open.
-static bool take_cover(connector *connector, connect_block *block, const int32_t face[2], int32_t cover,
-                       enf_loop cover_loop) {
-    enf_pool *pool = &connector->pool;
-    connector->rest_count = 0;
-    for (size_t i = 0; i < connector->open_count; i++) {
-        enf_loop inside = connector->open[i];
-        size_t rest_before = connector->rest_count;
+static bool take_cover(connector *c, int32_t facet, int32_t cover, enf_loop cover_loop) {
+    enf_pool *pool = &c->pool;
+    c->rest_count = 0;
+    for (size_t i = 0; i < c->open_count; i++) {
+        enf_loop inside = c->open[i];
+        size_t rest_before = c->rest_count;
         bool some = true;
         for (int32_t e = 0; e < cover_loop.count && some; e++) {
             int32_t plane = pool->corners[cover_loop.first + e].edge_plane;
@@ -112,10 +212,8 @@ static bool take_cover(connector *connector, connect_block *block, const int32_t
             if (position == ENF_POSITION_ACROSS) {
                 enf_loop behind, front;
                 enf_pool_cut(pool, inside, plane, &behind, &front);
-                if (!push_loop(&connector->rest, &connector->rest_count, &connector->rest_capacity,
-                               side < 0 ? front : behind)) {
+                if (!push_loop(&c->rest, &c->rest_count, &c->rest_capacity, side < 0 ? front : behind))
                     return false;
-                }
                 inside = side < 0 ? behind : front;
             } else {
                 some = position == (side < 0 ? ENF_POSITION_BEHIND : ENF_POSITION_FRONT);
@@ -123,204 +221,104 @@ static bool take_cover(connector *connector, connect_block *block, const int32_t
         }
         if (pool->failed) return false;
         if (!some) { // not under the cover at all: keep it in one piece
-            connector->rest_count = rest_before;
-            if (!push_loop(&connector->rest, &connector->rest_count, &connector->rest_capacity,
-                           connector->open[i])) {
-                return false;
-            }
-        } else if (!add_piece(connector, block, pool->corners + inside.first, inside.count, face, cover)) {
+            c->rest_count = rest_before;
+            if (!push_loop(&c->rest, &c->rest_count, &c->rest_capacity, c->open[i])) return false;
+        } else if (!add_piece(c, facet, pool->corners + inside.first, inside.count, cover)) {
             return false;
         }
     }
-    enf_loop *swap = connector->open;
-    connector->open = connector->rest;
-    connector->rest = swap;
-    size_t capacity = connector->open_capacity;
-    connector->open_capacity = connector->rest_capacity;
-    connector->rest_capacity = capacity;
-    connector->open_count = connector->rest_count;
+    enf_loop *swap = c->open;
+    c->open = c->rest;
+    c->rest = swap;
+    size_t capacity = c->open_capacity;
+    c->open_capacity = c->rest_capacity;
+    c->rest_capacity = capacity;
+    c->open_count = c->rest_count;
     return true;
 }
 
-/// One overlap of a back and a front face, with the facet's covers taken away.
-static bool add_overlap(const connect_all *all, connector *connector, connect_block *block, int32_t facet,
-                        enf_loop overlap, const int32_t face[2]) {
-    const enf_complex *complex = all->complex;
+static enf_loop copy_loop(connector *c, const enf_loops *loops, int32_t index, int32_t plane) {
+    const enf_corner *corners = loops->corners + loops->offset[index];
+    return enf_pool_loop(&c->pool, plane, corners, (int32_t)(loops->offset[index + 1] - loops->offset[index]));
+}
+
+/// A facet that covers share, and the rest of it.
+static bool share_facet(connector *c, int32_t facet) {
+    const enf_complex *complex = c->complex;
     int32_t plane = complex->facet_plane[facet];
-    int32_t first = complex->facet_cover[facet], end = complex->facet_cover[facet + 1];
-    connector->open_count = 0;
-    if (!push_loop(&connector->open, &connector->open_count, &connector->open_capacity, overlap))
-        return false;
-    for (int32_t c = first; c < end; c++) {
-        enf_loop cover = copy_loop(connector, &complex->covers, c, plane);
-        enf_loop seen = overlap;
-        if (end - first >
-            1) { // a cover that lies under another one takes nothing away, but is seen all the same
-            if (enf_pool_intersect(&connector->pool, &seen, cover) && !add_sight(all, block, face, c))
-                return false;
-        }
-        int32_t before = block->pieces.count;
-        if (connector->pool.failed || !take_cover(connector, block, face, c, cover)) return false;
-        if (end - first == 1 && block->pieces.count > before && !add_sight(all, block, face, c)) return false;
+    c->pool.corner_count = 0;
+    c->open_count = 0;
+    enf_loop whole = copy_loop(c, &complex->facets, facet, plane);
+    if (c->pool.failed || !push_loop(&c->open, &c->open_count, &c->open_capacity, whole)) return false;
+    for (int32_t i = complex->facet_cover[facet]; i < complex->facet_cover[facet + 1]; i++) {
+        enf_loop cover = copy_loop(c, &complex->covers, i, plane);
+        if (c->pool.failed || !take_cover(c, facet, i, cover)) return false;
     }
-    for (size_t i = 0; i < connector->open_count; i++) {
-        enf_loop loop = connector->open[i];
-        if (!add_piece(connector, block, connector->pool.corners + loop.first, loop.count, face,
-                       ENF_PIECE_OPEN))
-            return false;
+    for (size_t i = 0; i < c->open_count; i++) {
+        const enf_corner *corners = c->pool.corners + c->open[i].first;
+        if (!add_piece(c, facet, corners, c->open[i].count, ENF_PIECE_OPEN)) return false;
     }
-    return !connector->pool.failed;
+    return !c->pool.failed;
 }
 
-static bool add_pair(const connect_all *all, connector *connector, connect_block *block, int32_t facet,
-                     const int32_t face[2], bool whole_behind, bool whole_front) {
-    const enf_complex *complex = all->complex;
-    int32_t plane = complex->facet_plane[facet];
-    // Where one side is a single face, it is the whole facet and the other side's face is the overlap.
-    int32_t base = face[0] < 0 || (face[1] >= 0 && whole_behind) ? face[1] : face[0];
-    if (complex->facet_cover[facet] == complex->facet_cover[facet + 1] && (whole_behind || whole_front)) {
-        const enf_corner *corners = complex->faces.corners + complex->faces.offset[base];
-        int32_t count = (int32_t)(complex->faces.offset[base + 1] - complex->faces.offset[base]);
-        return add_piece(connector, block, corners, count, face, ENF_PIECE_OPEN);
-    }
-    enf_loop overlap = copy_loop(connector, &complex->faces, base, plane);
-    if (!whole_behind && !whole_front) {
-        enf_loop other = copy_loop(connector, &complex->faces, face[1], plane);
-        if (connector->pool.failed || !enf_pool_intersect(&connector->pool, &overlap, other)) {
-            return !connector->pool.failed;
-        }
-    }
-    return !connector->pool.failed && add_overlap(all, connector, block, facet, overlap, face);
-}
-
-static bool connect_facet(const connect_all *all, connector *connector, connect_block *block, int32_t facet) {
-    const enf_complex *complex = all->complex;
-    int32_t first = all->facet_face[facet], end = all->facet_face[facet + 1], middle = first;
-    while (middle < end && complex->face_side[all->faces_by_facet[middle]] == 0) middle++;
-    enf_pool_empty(&connector->pool);
-    bool whole_behind = middle - first <= 1, whole_front = end - middle <= 1;
-    for (int32_t b = first; b < middle || (b == first && middle == first); b++) {
-        for (int32_t f = middle; f < end || (f == middle && middle == end); f++) {
-            int32_t face[2] = {b < middle ? all->faces_by_facet[b] : -1,
-                               f < end ? all->faces_by_facet[f] : -1};
-            if (!add_pair(all, connector, block, facet, face, whole_behind, whole_front)) return false;
-        }
-    }
-    return true;
-}
-
-static void connect_job(void *user, int32_t index, int thread) {
-    connect_all *all = user;
-    connect_block *block = &all->blocks[index];
-    for (int32_t i = 0; i < BLOCK && index * BLOCK + i < all->complex->facet_count; i++) {
-        int32_t before = block->pieces.count;
-        if (!connect_facet(all, &all->connectors[thread], block, index * BLOCK + i)) {
-            all->failed[index] = true;
-            return;
-        }
-        block->piece_count[i] = block->pieces.count - before;
-    }
-}
-
-// ---------------------------------------------------------------------------------------------- all together
-
-/// Faces sorted by facet, those behind first; and the cell of every face.
-static bool sort_faces(const enf_complex *complex, int32_t **facet_face, int32_t **faces_by_facet,
-                       int32_t **face_cell) {
+static bool make_pieces(connector *c) {
+    enf_complex *complex = c->complex;
     size_t facets = (size_t)complex->facet_count;
-    int32_t *next = *facet_face = enf_array_zeroed(facets + 2, sizeof *next);
-    *faces_by_facet = enf_array_new((size_t)complex->faces.count, sizeof **faces_by_facet);
-    *face_cell = enf_array_new((size_t)complex->faces.count, sizeof **face_cell);
-    if (!next || !*faces_by_facet || !*face_cell) return false;
-    for (int32_t f = 0; f < complex->faces.count; f++) next[complex->face_facet[f] + 2]++;
-    for (size_t f = 0; f < facets; f++) next[f + 2] += next[f + 1];
-    for (int side = 0; side < 2; side++) {
-        for (int32_t f = 0; f < complex->faces.count; f++) {
-            if (complex->face_side[f] == side) (*faces_by_facet)[next[complex->face_facet[f] + 1]++] = f;
-        }
+    complex->facet_piece = enf_array_new(facets + 1, sizeof *complex->facet_piece);
+    size_t room = facets + facets / 16 + 1; // most facets are one piece
+    if (!complex->facet_piece ||
+        !enf_array_reserve(complex->piece_facet, c->piece_facet_capacity, room) ||
+        !enf_array_reserve(complex->piece_cover, c->piece_capacity, room) ||
+        !enf_array_reserve(complex->pieces.offset, complex->pieces.offset_capacity, room + 1)) {
+        return false;
     }
-    for (int32_t c = 0; c < complex->cell_count; c++) {
-        for (int32_t f = complex->cell_face[c]; f < complex->cell_face[c + 1]; f++) (*face_cell)[f] = c;
+    complex->pieces.offset[0] = 0;
+    for (int32_t f = 0; f < complex->facet_count; f++) {
+        complex->facet_piece[f] = complex->pieces.count;
+        int32_t begin = complex->facet_cover[f], end = complex->facet_cover[f + 1], over = begin;
+        while (over < end && complex->covers.offset[over] != complex->covers.offset[over + 1]) over++;
+        bool good = over < end    ? add_piece(c, f, NULL, 0, over)
+                    : begin == end ? add_piece(c, f, NULL, 0, ENF_PIECE_OPEN)
+                                   : share_facet(c, f);
+        if (!good) return false;
     }
+    complex->facet_piece[facets] = complex->pieces.count;
     return true;
 }
 
-static bool join_pieces(enf_complex *complex, const connect_block *blocks, int32_t block_count,
-                        int32_t shared_end) {
-    size_t pieces = 0, corners = 0;
-    for (int32_t b = 0; b < block_count; b++) {
-        pieces += (size_t)blocks[b].pieces.count;
-        corners += blocks[b].pieces.corner_count;
-    }
-    if (pieces > INT32_MAX) return false;
-    complex->pieces.offset = enf_array_new(pieces + 1, sizeof *complex->pieces.offset);
-    complex->pieces.corners = enf_array_new(corners, sizeof *complex->pieces.corners);
-    complex->piece_face = enf_array_new(pieces, sizeof *complex->piece_face);
-    complex->piece_cover = enf_array_new(pieces, sizeof *complex->piece_cover);
-    complex->facet_piece = enf_array_new((size_t)complex->facet_count + 1, sizeof *complex->facet_piece);
-    if (!complex->pieces.offset || !complex->pieces.corners || !complex->piece_face ||
-        !complex->piece_cover || !complex->facet_piece) {
-        return false;
-    }
-    int32_t vertex_base = 0;
-    for (int32_t b = 0; b < block_count; b++) {
-        const connect_block *block = &blocks[b];
-        int32_t piece = complex->pieces.count;
-        for (int32_t i = 0; i < BLOCK && b * BLOCK + i < complex->facet_count; i++) {
-            complex->facet_piece[b * BLOCK + i] = piece;
-            piece += block->piece_count[i];
-        }
-        for (int32_t i = 0; i < block->pieces.count; i++) {
-            complex->pieces.offset[complex->pieces.count + i] =
-                (int64_t)complex->pieces.corner_count + block->pieces.offset[i];
-        }
-        for (size_t i = 0; i < block->pieces.corner_count; i++) {
-            enf_corner corner = block->pieces.corners[i];
-            if (corner.vertex >= shared_end) corner.vertex += vertex_base;
-            complex->pieces.corners[complex->pieces.corner_count + i] = corner;
-        }
-        size_t count = (size_t)block->pieces.count;
-        if (count) {
-            memcpy(complex->piece_face + complex->pieces.count, block->piece_face,
-                   count * sizeof *block->piece_face);
-            memcpy(complex->piece_cover + complex->pieces.count, block->piece_cover,
-                   count * sizeof *block->piece_cover);
-        }
-        complex->pieces.count += block->pieces.count;
-        complex->pieces.corner_count += block->pieces.corner_count;
-        vertex_base += (int32_t)block->crossing_count;
-    }
-    complex->facet_piece[complex->facet_count] = complex->pieces.count;
-    complex->pieces.offset[complex->pieces.count] = (int64_t)complex->pieces.corner_count;
-    return true;
-}
+// ---------------------------------------------------------------------------------------------- sights
 
 static int compare_numbers(const void *a, const void *b) {
     int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
     return (x > y) - (x < y);
 }
 
-/// Per cell the polygons it sees, ascending, each once.
-static bool join_sights(enf_complex *complex, const connect_block *blocks, int32_t block_count) {
-    size_t cells = (size_t)complex->cell_count, total = 0;
-    for (int32_t b = 0; b < block_count; b++) total += blocks[b].sight_count;
+/// Per cell the polygons whose front it sees, ascending, each once.
+static bool make_sights(enf_complex *complex) {
+    size_t cells = (size_t)complex->cell_count;
     int64_t *next = complex->seen_offset = enf_array_zeroed(cells + 2, sizeof *next);
-    complex->seen = enf_array_new(total, sizeof *complex->seen);
+    complex->seen = enf_array_new((size_t)complex->covers.count, sizeof *complex->seen);
     if (!next || !complex->seen) return false;
-    for (int32_t b = 0; b < block_count; b++) {
-        for (size_t i = 0; i < blocks[b].sight_count; i++) next[blocks[b].sights[i].cell + 2]++;
-    }
-    for (size_t c = 0; c < cells; c++) next[c + 2] += next[c + 1];
-    for (int32_t b = 0; b < block_count; b++) {
-        for (size_t i = 0; i < blocks[b].sight_count; i++) {
-            complex->seen[next[blocks[b].sights[i].cell + 1]++] = blocks[b].sights[i].polygon;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int32_t f = 0; f < complex->facet_count; f++) {
+            for (int32_t i = complex->facet_cover[f]; i < complex->facet_cover[f + 1]; i++) {
+                int32_t cell = complex->facet_cell[f][complex->cover_side[i]];
+                if (cell < 0) continue;
+                if (pass == 0) {
+                    next[cell + 2]++;
+                } else {
+                    complex->seen[next[cell + 1]++] = complex->cover_polygon[i];
+                }
+            }
         }
+        for (size_t i = 0; pass == 0 && i < cells; i++) next[i + 2] += next[i + 1];
     }
     int64_t kept = 0, begin = 0;
-    for (size_t c = 0; c < cells; c++) {
-        int64_t end = next[c + 1];
-        qsort(complex->seen + begin, (size_t)(end - begin), sizeof *complex->seen, compare_numbers);
-        next[c] = kept;
+    for (size_t cell = 0; cell < cells; cell++) {
+        int64_t end = next[cell + 1];
+        if (end - begin > 1)
+            qsort(complex->seen + begin, (size_t)(end - begin), sizeof *complex->seen, compare_numbers);
+        next[cell] = kept;
         for (int64_t i = begin; i < end; i++) {
             if (i == begin || complex->seen[i] != complex->seen[i - 1])
                 complex->seen[kept++] = complex->seen[i];
@@ -330,6 +328,8 @@ static bool join_sights(enf_complex *complex, const connect_block *blocks, int32
     next[cells] = kept;
     return true;
 }
+
+// ---------------------------------------------------------------------------------------------- vertices
 
 static void mark_vertices(const enf_loops *loops, int32_t point_count, int32_t *number) {
     for (size_t i = 0; i < loops->corner_count; i++) {
@@ -345,113 +345,85 @@ static void renumber_vertices(enf_loops *loops, int32_t point_count, const int32
 }
 
 /// Keeps the crossings that a loop uses, in order, and rounds them to coordinates.
-static bool make_vertices(enf_complex *complex, const enf_arrangement *arrangement,
-                          const enf_crossing *crossings, const connect_block *blocks, int32_t block_count) {
-    int32_t points = complex->point_count, made = complex->vertex_count - points, total = made;
-    for (int32_t b = 0; b < block_count; b++) total += (int32_t)blocks[b].crossing_count;
-    int32_t *number = enf_array_zeroed((size_t)total, sizeof *number);
+static bool make_vertices(connector *c) {
+    enf_complex *complex = c->complex;
+    const enf_geometry *geometry = &c->pool.geometry;
+    int32_t points = complex->point_count, made = geometry->crossing_count;
+    int32_t *number = enf_array_zeroed((size_t)made, sizeof *number);
     if (!number) return false;
-    mark_vertices(&complex->faces, points, number);
+    mark_vertices(&complex->facets, points, number);
     mark_vertices(&complex->covers, points, number);
     mark_vertices(&complex->pieces, points, number);
     int32_t count = points;
-    for (int32_t i = 0; i < total; i++) number[i] = number[i] ? count++ : -1;
+    for (int32_t i = 0; i < made; i++) number[i] = number[i] ? count++ : -1;
     complex->vertex_count = count;
     complex->vertex_planes = enf_array_new((size_t)count, sizeof *complex->vertex_planes);
     complex->vertex_position = enf_array_new((size_t)count, sizeof *complex->vertex_position);
-    if (!complex->vertex_planes || !complex->vertex_position) {
-        free(number);
-        return false;
-    }
-    memset(complex->vertex_planes, 0xff, (size_t)points * sizeof *complex->vertex_planes); // -1 -1 -1
-    memcpy(complex->vertex_position, complex->points, (size_t)points * sizeof *complex->vertex_position);
-    enf_geometry geometry = arrangement->geometry;
-    const enf_crossing *source = crossings;
-    for (int32_t b = -1, i = 0; b < block_count; b++) {
-        int32_t end = b < 0 ? made : i + (int32_t)blocks[b].crossing_count, begin = i;
-        geometry.shared = source = b < 0 ? crossings : blocks[b].crossings;
-        geometry.shared_count = end - begin;
-        for (; i < end; i++) {
+    if (complex->vertex_planes && complex->vertex_position) {
+        memset(complex->vertex_planes, 0xff, (size_t)points * sizeof *complex->vertex_planes); // -1 -1 -1
+        memcpy(complex->vertex_position, complex->points, (size_t)points * sizeof *complex->vertex_position);
+        for (int32_t i = 0; i < made; i++) {
             if (number[i] < 0) continue;
-            memcpy(complex->vertex_planes[number[i]], source[i - begin].plane,
+            memcpy(complex->vertex_planes[number[i]], geometry->crossings[i].plane,
                    sizeof *complex->vertex_planes);
-            enf_geometry_position(&geometry, points + (i - begin), complex->vertex_position[number[i]]);
+            enf_geometry_position(geometry, points + i, complex->vertex_position[number[i]]);
         }
+        renumber_vertices(&complex->facets, points, number);
+        renumber_vertices(&complex->covers, points, number);
+        renumber_vertices(&complex->pieces, points, number);
     }
-    renumber_vertices(&complex->faces, points, number);
-    renumber_vertices(&complex->covers, points, number);
-    renumber_vertices(&complex->pieces, points, number);
     free(number);
-    return true;
+    return complex->vertex_planes && complex->vertex_position;
 }
 
-static bool run_blocks(connect_all *all, enf_arrangement *arrangement, const enf_crossing *crossings,
-                       int32_t block_count, const enf_crew *crew, bool *stopped) {
-    int threads = crew->threads;
-    for (int i = 0; i < threads; i++) {
-        enf_geometry *geometry = &all->connectors[i].pool.geometry;
-        *geometry = arrangement->geometry;
-        geometry->decided_by_filter = geometry->decided_exactly = 0;
-        geometry->shared = crossings;
-        geometry->shared_count = all->complex->vertex_count - all->complex->point_count;
-    }
-    *stopped = !enf_parallel_for(crew, block_count, connect_job, all);
-    bool good = !*stopped;
-    for (int32_t b = 0; b < block_count; b++) good = good && !all->failed[b];
-    for (int i = 0; i < threads; i++) {
-        arrangement->geometry.decided_by_filter += all->connectors[i].pool.geometry.decided_by_filter;
-        arrangement->geometry.decided_exactly += all->connectors[i].pool.geometry.decided_exactly;
-    }
-    return good;
-}
+// ---------------------------------------------------------------------------------------------- all together
 
-static void free_blocks(connect_all *all, int32_t block_count, int threads) {
-    for (int32_t b = 0; all->blocks && b < block_count; b++) {
-        enf_loops_free(&all->blocks[b].pieces);
-        free(all->blocks[b].piece_face);
-        free(all->blocks[b].piece_cover);
-        free(all->blocks[b].crossings);
-        free(all->blocks[b].sights);
-    }
-    for (int i = 0; all->connectors && i < threads; i++) {
-        enf_pool_free(&all->connectors[i].pool);
-        free(all->connectors[i].open);
-        free(all->connectors[i].rest);
-    }
-    free(all->blocks);
-    free(all->connectors);
-    free(all->failed);
-}
-
-enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangement,
-                               const enf_crossing *crossings, const enf_crew *crew, enf_error *error) {
-    int threads = crew->threads;
-    bool stopped = false;
-    int32_t block_count = (complex->facet_count + BLOCK - 1) / BLOCK;
-    int32_t *facet_face = NULL, *faces_by_facet = NULL, *face_cell = NULL;
-    connect_all all = {.complex = complex,
-                       .blocks = enf_array_zeroed((size_t)block_count, sizeof *all.blocks),
-                       .connectors = enf_array_zeroed((size_t)threads, sizeof *all.connectors),
-                       .failed = enf_array_zeroed((size_t)block_count, sizeof *all.failed)};
-    bool good = all.blocks && all.connectors && all.failed &&
-                sort_faces(complex, &facet_face, &faces_by_facet, &face_cell);
-    all.facet_face = facet_face;
-    all.faces_by_facet = faces_by_facet;
-    all.face_cell = face_cell;
-    good = good && run_blocks(&all, arrangement, crossings, block_count, crew, &stopped) &&
-           join_pieces(complex, all.blocks, block_count, complex->vertex_count) &&
-           join_sights(complex, all.blocks, block_count) &&
-           make_vertices(complex, arrangement, crossings, all.blocks, block_count);
-    free_blocks(&all, block_count, threads);
-    free(facet_face);
-    free(faces_by_facet);
-    free(face_cell);
-    if (stopped) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
-    if (!good) return enf_fail_memory(error, "the facets' pieces");
+/// What the complex has in common with the arrangement.
+static bool take_arrangement(enf_complex *complex, enf_arrangement *arrangement) {
+    const enf_tet_mesh *tets = &arrangement->tets;
+    complex->points = arrangement->geometry.points;
+    complex->point_count = arrangement->geometry.point_count;
+    complex->tetrahedra = enf_array_new((size_t)tets->count, sizeof *complex->tetrahedra);
+    if (!complex->tetrahedra) return false;
+    memcpy(complex->tetrahedra, tets->corners, (size_t)tets->count * sizeof *complex->tetrahedra);
     complex->planes = arrangement->geometry.planes;
     complex->plane_count = arrangement->geometry.plane_count;
     arrangement->geometry.planes = NULL;
-    complex->predicates_filter = arrangement->geometry.decided_by_filter;
-    complex->predicates_exact = arrangement->geometry.decided_exactly;
-    return ENF_OK;
+    return true;
+}
+
+static bool connect(connector *c, enf_arrangement *arrangement, const enf_crew *crew, bool *stopped) {
+    if (!enf_covers_find(&c->covers, arrangement, crew, &c->pool, stopped)) return false;
+    c->space->geometry = c->pool.geometry;
+    bool good = number_cells(c);
+    c->pool.geometry = c->space->geometry;
+    if (!good) return false;
+    renumber_tree(c);
+    c->complex->node_plane = c->space->node_plane;
+    good = make_facets(c);
+    c->space->node_plane = NULL;
+    return good && make_cells(c->complex) && make_covers(c) && make_pieces(c) && make_sights(c->complex) &&
+           take_arrangement(c->complex, arrangement) && make_vertices(c);
+}
+
+enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
+                               enf_error *error) {
+    connector c = {.complex = complex, .arrangement = arrangement, .space = &arrangement->subdivision};
+    bool stopped = false;
+    c.pool.geometry = c.space->geometry;
+    c.space->geometry.crossings = NULL;
+    bool good = connect(&c, arrangement, crew, &stopped);
+    c.space->geometry.crossings = NULL;
+    complex->predicates_filter = arrangement->geometry.decided_by_filter + c.pool.geometry.decided_by_filter;
+    complex->predicates_exact = arrangement->geometry.decided_exactly + c.pool.geometry.decided_exactly;
+    enf_pool_free(&c.pool);
+    enf_covers_free(&c.covers);
+    free(c.cell_number);
+    free(c.facet_number);
+    free(c.cover_order);
+    free(c.open);
+    free(c.rest);
+    enf_subdivision_free(c.space);
+    if (stopped) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
+    return good ? ENF_OK : enf_fail_memory(error, "the facets' pieces");
 }

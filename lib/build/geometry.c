@@ -57,8 +57,8 @@ static void whole_spans(const enf_geometry *geometry, int32_t plane, int64_t u[3
 }
 
 /// Planes square to an axis get the normal +1 or -1: exact, and small enough to keep crossings exact as well.
-static void set_square_plane(enf_geometry *geometry, int32_t plane, int axis) {
-    enf_plane_filter *filter = &geometry->filters[plane];
+static void make_square_filter(const enf_geometry *geometry, int32_t plane, int axis,
+                               enf_plane_filter *filter) {
     const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
     int j = (axis + 1) % 3, k = (axis + 2) % 3;
     int64_t u[3], v[3];
@@ -72,15 +72,14 @@ static void set_square_plane(enf_geometry *geometry, int32_t plane, int axis) {
     filter->normal_error = filter->offset_error = 0;
 }
 
-void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane) {
-    enf_plane_filter *filter = &geometry->filters[plane];
+void enf_geometry_make_filter(const enf_geometry *geometry, int32_t plane, enf_plane_filter *filter) {
     const int32_t *defined = geometry->planes[plane];
     const double *p = geometry->points + 3 * (size_t)defined[0];
     double u[3], v[3], bound = 0;
     plane_spans(geometry, plane, u, v);
-    int axis = square_axis(u, v);
-    if (axis >= 0) {
-        set_square_plane(geometry, plane, axis);
+    filter->axis = square_axis(u, v);
+    if (filter->axis >= 0) {
+        make_square_filter(geometry, plane, filter->axis, filter);
         return;
     }
     for (int i = 0; i < 3; i++) {
@@ -107,6 +106,19 @@ void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane) {
     filter->offset_unit = filter->normal_unit * unit;
     if (bound < 0x1p53 * filter->normal_unit) filter->normal_error = 0;
     if (filter->normal_error == 0 && magnitude < 0x1p53 * filter->offset_unit) filter->offset_error = 0;
+}
+
+void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane) {
+    enf_geometry_make_filter(geometry, plane, &geometry->filters[plane - geometry->filter_first]);
+}
+
+/// The stored filter, or one made in `room`.
+static const enf_plane_filter *filter_of(const enf_geometry *geometry, int32_t plane,
+                                         enf_plane_filter *room) {
+    if (plane >= geometry->filter_first && (plane < geometry->filter_end || geometry->filter_end == 0))
+        return &geometry->filters[plane - geometry->filter_first];
+    enf_geometry_make_filter(geometry, plane, room);
+    return room;
 }
 
 // ---------------------------------------------------------------------------------------------- exact tier
@@ -186,9 +198,10 @@ static void cross(double out[3], const double a[3], const double b[3]) {
 /// coefficients.
 static void approximate(const enf_geometry *geometry, enf_crossing *crossing) {
     const enf_plane_filter *f[3];
+    enf_plane_filter room[3];
     double size[3], error[3], reach[3], off[3];
     for (int k = 0; k < 3; k++) {
-        f[k] = &geometry->filters[crossing->plane[k]];
+        f[k] = filter_of(geometry, crossing->plane[k], &room[k]);
         size[k] = f[k]->normal_size + f[k]->normal_error;
         error[k] = f[k]->normal_error;
         reach[k] = fabs(f[k]->offset) + f[k]->offset_error;
@@ -248,11 +261,17 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
 // ---------------------------------------------------------------------------------------------- the
 // predicate
 
-static int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane) {
+static int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane,
+                         const enf_plane_filter *filter) {
     const int32_t *defined = geometry->planes[plane];
     if (point == defined[0] || point == defined[1] || point == defined[2]) return 0;
-    const enf_plane_filter *filter = &geometry->filters[plane];
     const double *x = geometry->points + 3 * (size_t)point, *p = geometry->points + 3 * (size_t)defined[0];
+    if (filter->axis >= 0) { // a comparison
+        geometry->decided_by_filter++;
+        double here = x[filter->axis], there = p[filter->axis];
+        int order = (here > there) - (here < there);
+        return filter->normal[filter->axis] > 0 ? order : -order;
+    }
     double value = 0, magnitude = 0, reach = 0;
     for (int i = 0; i < 3; i++) {
         double difference = x[i] - p[i];
@@ -307,9 +326,9 @@ static bool shares_line(const enf_geometry *geometry, const enf_crossing *crossi
     return false;
 }
 
-static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
+static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
+                            const enf_plane_filter *filter) {
     if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
-    const enf_plane_filter *filter = &geometry->filters[plane];
     double value = filter->offset * crossing->weight, magnitude = fabs(value), reach = 0;
     for (int i = 0; i < 3; i++) {
         double term = filter->normal[i] * crossing->at[i];
@@ -343,13 +362,20 @@ static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing
     return determinant_sign(&exact[0], &exact[1], &exact[2], &exact[3]) * crossing->weight_sign;
 }
 
+int enf_geometry_side_by(enf_geometry *geometry, int32_t vertex, int32_t plane,
+                         const enf_plane_filter *filter) {
+    if (vertex < geometry->point_count) return side_of_point(geometry, vertex, plane, filter);
+    return side_of_crossing(geometry, enf_geometry_crossing(geometry, vertex), plane, filter);
+}
+
 int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane) {
-    if (vertex < geometry->point_count) return side_of_point(geometry, vertex, plane);
-    return side_of_crossing(geometry, enf_geometry_crossing(geometry, vertex), plane);
+    enf_plane_filter room;
+    return enf_geometry_side_by(geometry, vertex, plane, filter_of(geometry, plane, &room));
 }
 
 uint64_t enf_geometry_plane_bucket(const enf_geometry *geometry, int32_t plane) {
-    const enf_plane_filter *filter = &geometry->filters[plane];
+    enf_plane_filter room;
+    const enf_plane_filter *filter = filter_of(geometry, plane, &room);
     double length = sqrt(filter->normal[0] * filter->normal[0] + filter->normal[1] * filter->normal[1] +
                          filter->normal[2] * filter->normal[2]);
     double part[4] = {filter->normal[0] / length, filter->normal[1] / length, filter->normal[2] / length,

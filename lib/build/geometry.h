@@ -18,6 +18,7 @@ typedef struct enf_plane_filter {
     double normal_error;             ///< bound on each component's error; 0: exact
     double offset_error;             ///< the same for the offset
     double normal_unit, offset_unit; ///< powers of two that divide the true coefficients
+    int32_t axis;                    ///< the axis that the plane is square to (its normal is +-1 then), or -1
 } enf_plane_filter;
 
 /// A crossing of three planes in homogeneous coordinates, with error bounds.
@@ -36,8 +37,10 @@ typedef struct enf_geometry {
     int32_t point_count;
     const double *points;      ///< xyz
     int32_t (*planes)[3];      ///< as in enf_complex
-    enf_plane_filter *filters; ///< one per plane
     int32_t plane_count;
+    /// Of planes filter_first .. filter_end - 1; filter_end = 0: of all. Others are made when they are needed.
+    enf_plane_filter *filters;
+    int32_t filter_first, filter_end;
 
     const enf_crossing *shared; ///< vertex point_count + i; may be null
     int32_t shared_count;
@@ -48,7 +51,10 @@ typedef struct enf_geometry {
     uint64_t decided_by_filter, decided_exactly;
 } enf_geometry;
 
-/// Fills filters[plane] from planes[plane].
+/// The plane's filter, from planes[plane].
+void enf_geometry_make_filter(const enf_geometry *geometry, int32_t plane, enf_plane_filter *filter);
+
+/// Fills the stored filter of a plane.
 void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane);
 
 /// The vertex where three planes cross in one point (they must). -1 without memory.
@@ -59,6 +65,10 @@ const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t 
 
 /// +1: the vertex is in front of the plane, -1: behind, 0: on it. Exact.
 int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane);
+
+/// The same with the plane's filter at hand.
+int enf_geometry_side_by(enf_geometry *geometry, int32_t vertex, int32_t plane,
+                         const enf_plane_filter *filter);
 
 /// A hash that is the same for planes that are (up to rounding, with rare exceptions) the same, whichever way
 /// they face: a first sieve before the exact test.

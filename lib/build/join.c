@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A closed surface that is convex at every edge is convex (H. Tietze 1928, S. Nakajima 1928); two convex cells
+// that share facets can only fail to be so at the edges around these. The same test decides flips of tetrahedra.
+#include "build/join.h"
+
+#include "base/array.h"
+
+#include <stdlib.h>
+
+/// The facet at an edge that belongs to `cell` and not to `other`: a half of it, or -1.
+static int32_t half_of(const enf_subdivision *s, int32_t edge, int32_t cell, int32_t other) {
+    for (int32_t h = s->edge_half[edge]; h >= 0; h = s->halves[h].radial) {
+        const enf_share *facet = &s->facets[s->halves[h].facet];
+        if (facet->first < 0) continue;
+        if (facet->cell[0] == cell ? facet->cell[1] != other : facet->cell[1] == cell && facet->cell[0] != other)
+            return h;
+    }
+    return -1;
+}
+
+/// Does the facet of half `b` lie on the inner side of (or in) the plane of half `a`'s, which bounds `cell`?
+static bool folds_in(enf_subdivision *s, int32_t a, int32_t b, int32_t cell) {
+    int32_t facet = s->halves[a].facet, plane = enf_subdivision_plane(s, facet);
+    if (plane == enf_subdivision_plane(s, s->halves[b].facet)) return true;
+    int32_t line = s->halves[b].edge_plane, at = s->halves[b].next;
+    while (s->halves[at].edge_plane == line) at = s->halves[at].next;
+    int side = enf_geometry_side(&s->geometry, s->halves[s->halves[at].next].vertex, plane);
+    return side == 0 || (side < 0) == (s->facets[facet].cell[0] == cell);
+}
+
+/// Is the union of the two cells of facet f convex at its edges? Edges to another facet between the same two are
+/// inside the wall.
+static bool convex_around(enf_subdivision *s, int32_t f) {
+    int32_t behind = s->facets[f].cell[0], front = s->facets[f].cell[1];
+    int32_t first = s->facets[f].first, h = first;
+    do {
+        int32_t a = half_of(s, s->halves[h].edge, behind, front);
+        if (a >= 0) {
+            int32_t b = half_of(s, s->halves[h].edge, front, behind);
+            if (b < 0 || !folds_in(s, a, b, behind)) return false;
+        }
+        h = s->halves[h].next;
+    } while (h != first);
+    return true;
+}
+
+/// All facets between the two cells: open, and the union convex around them?
+static bool may_join(enf_subdivision *s, const uint8_t *covered, int32_t f) {
+    int32_t behind = s->facets[f].cell[0], front = s->facets[f].cell[1];
+    if (!convex_around(s, f)) return false;
+    for (int32_t g = s->cell_facet[front], next; g >= 0; g = next) {
+        const enf_share *facet = &s->facets[g];
+        int side = facet->cell[1] == front;
+        next = facet->next[side];
+        if (facet->cell[1 - side] != behind || g == f) continue;
+        if (covered[g] || !convex_around(s, g)) return false;
+    }
+    return true;
+}
+
+/// `front` goes into `behind`; the facets between them go.
+static void join_cells(enf_subdivision *s, int32_t behind, int32_t front) {
+    int32_t kept = -1;
+    for (int k = 0; k < 2; k++) {
+        int32_t cell = k == 0 ? behind : front, other = k == 0 ? front : behind;
+        for (int32_t g = s->cell_facet[cell], next; g >= 0; g = next) {
+            enf_share *facet = &s->facets[g];
+            int side = facet->cell[1] == cell;
+            next = facet->next[side];
+            if (facet->cell[1 - side] == other) {
+                if (k == 1) facet->first = -1; // the second time round: still linked for the first
+                continue;
+            }
+            facet->cell[side] = behind;
+            facet->next[side] = kept;
+            kept = g;
+        }
+    }
+    s->cell_facet[behind] = kept;
+    s->cell_facet[front] = -1;
+}
+
+static bool is_part(const enf_subdivision *s, int32_t cell) {
+    return cell >= 0 && s->cell_parent[cell] >= 0;
+}
+
+int32_t enf_subdivision_join(enf_subdivision *s, const uint8_t *covered, int32_t *into) {
+    int32_t joined = 0, before;
+    for (size_t c = 0; c < s->cell_count; c++) into[c] = (int32_t)c;
+    do {
+        before = joined;
+        for (size_t i = s->facet_count; i-- > 0;) {
+            enf_share *facet = &s->facets[i];
+            if (facet->first < 0 || covered[i] || !is_part(s, facet->cell[0]) || !is_part(s, facet->cell[1]))
+                continue;
+            if (!may_join(s, covered, (int32_t)i)) continue;
+            into[facet->cell[1]] = facet->cell[0];
+            join_cells(s, facet->cell[0], facet->cell[1]);
+            joined++;
+        }
+    } while (joined > before);
+    for (size_t c = 0; c < s->cell_count; c++) {
+        int32_t root = into[c];
+        while (into[root] != root) root = into[root];
+        for (int32_t at = (int32_t)c, next; at != root; at = next) {
+            next = into[at];
+            into[at] = root;
+        }
+    }
+    return joined;
+}

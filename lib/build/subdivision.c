@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "build/subdivision.h"
+
+#include "base/array.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void enf_subdivision_free(enf_subdivision *s) {
+    void *arrays[] = {s->geometry.crossings, s->halves,      s->facets,     s->edge_half,   s->edge_slot,
+                      s->cell_facet,         s->cell_parent, s->node_plane, s->node_child,  s->tetrahedron_root,
+                      s->vertex_sign,        s->shares,      s->cut_edges,  s->outline,     s->outline_at};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    memset(s, 0, sizeof *s);
+}
+
+// ---------------------------------------------------------------------------------------------- setting out
+
+/// The facet opposite corner k of tetrahedron t as three halves, 3 * facet + i; edges come later.
+static void add_tetrahedron_facet(enf_subdivision *s, const enf_tet_mesh *tets, int32_t t, int k) {
+    int32_t facet = tets->facets[t][k];
+    for (int i = 0; i < 3; i++) {
+        // The edge to the next corner lies on the face opposite the third one.
+        int32_t third = tets->facet_corners[facet][(i + 2) % 3];
+        int opposite = 0;
+        while (tets->corners[t][opposite] != third) opposite++;
+        s->halves[3 * (size_t)facet + (size_t)i] = (enf_half){.vertex = tets->facet_corners[facet][i],
+                                                              .next = 3 * facet + (i + 1) % 3,
+                                                              .edge_plane = tets->facets[t][opposite],
+                                                              .facet = facet};
+    }
+    s->facets[facet] = (enf_share){.source = facet, .next = {-1, -1}, .first = 3 * facet};
+    for (int side = 0; side < 2; side++) s->facets[facet].cell[side] = tets->facet_sides[facet][side];
+}
+
+/// Gives halves between the same two vertices the same edge. Halves are first listed by their lower vertex
+/// (through `radial`), then each list is told apart by the higher one.
+static bool pair_halves(enf_subdivision *s) {
+    size_t points = (size_t)s->geometry.point_count;
+    int32_t *list = enf_array_new(points, sizeof *list), *edge_of = enf_array_new(points, sizeof *edge_of);
+    if (!list || !edge_of) {
+        free(list);
+        free(edge_of);
+        return false;
+    }
+    for (size_t i = 0; i < points; i++) list[i] = edge_of[i] = -1;
+    for (size_t h = s->half_count; h-- > 0;) {
+        int32_t from = s->halves[h].vertex, to = s->halves[s->halves[h].next].vertex;
+        int32_t low = from < to ? from : to;
+        s->halves[h].radial = list[low];
+        list[low] = (int32_t)h;
+    }
+    for (size_t low = 0; low < points; low++) {
+        int32_t first_edge = (int32_t)s->edge_count;
+        for (int32_t h = list[low], next; h >= 0; h = next) {
+            enf_half *half = &s->halves[h];
+            next = half->radial;
+            int32_t to = s->halves[half->next].vertex, high = half->vertex == (int32_t)low ? to : half->vertex;
+            if (edge_of[high] < first_edge) {
+                edge_of[high] = (int32_t)s->edge_count++;
+                s->edge_half[edge_of[high]] = -1;
+            }
+            half->edge = edge_of[high];
+            half->radial = s->edge_half[half->edge];
+            s->edge_half[half->edge] = h;
+        }
+    }
+    free(list);
+    free(edge_of);
+    return true;
+}
+
+bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, const enf_tet_mesh *tets) {
+    memset(s, 0, sizeof *s);
+    s->geometry = *geometry;
+    size_t facets = (size_t)tets->facet_count, count = (size_t)tets->count;
+    size_t points = (size_t)geometry->point_count;
+    s->tetrahedron_count = tets->count;
+    s->tetrahedron_root = enf_array_new(count, sizeof *s->tetrahedron_root);
+    // Edges: as many as points and facets less tetrahedra and one (Euler), if the hull is a ball.
+    if (!s->tetrahedron_root || !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 1) ||
+        !enf_array_reserve(s->facets, s->facet_capacity, facets + 1) ||
+        !enf_array_reserve(s->edge_half, s->edge_capacity, points + facets + 1) ||
+        !enf_array_reserve(s->cell_facet, s->cell_capacity, count + 1) ||
+        !enf_array_reserve(s->cell_parent, s->parent_capacity, count + 1) ||
+        !enf_array_reserve(s->vertex_sign, s->sign_capacity, points + 1) ||
+        !enf_array_reserve(s->outline_at, s->outline_at_capacity, points + 1)) {
+        return false;
+    }
+    memset(s->vertex_sign, 0, points * sizeof *s->vertex_sign);
+    s->half_count = 3 * facets;
+    s->facet_count = facets;
+    s->cell_count = count;
+    for (int32_t t = 0; t < tets->count; t++) {
+        s->tetrahedron_root[t] = s->cell_parent[t] = -1 - t;
+        s->cell_facet[t] = -1;
+        for (int k = 0; k < 4; k++) {
+            int32_t facet = tets->facets[t][k], front = tets->facet_sides[facet][1] == t;
+            if (!front || tets->facet_sides[facet][0] < 0) add_tetrahedron_facet(s, tets, t, k);
+        }
+    }
+    for (int32_t t = 0; t < tets->count; t++) {
+        for (int k = 0; k < 4; k++) {
+            int32_t facet = tets->facets[t][k], front = tets->facet_sides[facet][1] == t;
+            s->facets[facet].next[front] = s->cell_facet[t];
+            s->cell_facet[t] = facet;
+        }
+    }
+    return pair_halves(s);
+}
+
+// ---------------------------------------------------------------------------------------------- looking
+
+void enf_subdivision_take_plane(enf_subdivision *s, int32_t plane) {
+    s->plane = plane;
+    s->plane_mark++;
+    enf_geometry_make_filter(&s->geometry, plane, &s->filter);
+}
+
+static bool note_cut_edge(enf_subdivision *s, int32_t half, int32_t from, int32_t to) {
+    int32_t edge = s->halves[half].edge, slot = s->edge_slot[edge];
+    if (slot >= 0 && (size_t)slot < s->cut_edge_count && s->cut_edges[slot].edge == edge) return true;
+    if (!enf_array_reserve(s->cut_edges, s->cut_edge_capacity, s->cut_edge_count + 1)) return false;
+    s->edge_slot[edge] = (int32_t)s->cut_edge_count;
+    s->cut_edges[s->cut_edge_count++] = (enf_cut_edge){from, to, half, edge, -1};
+    return true;
+}
+
+int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
+    bool behind = false, front = false;
+    s->share_count = s->cut_edge_count = 0;
+    if (s->edge_capacity > s->slot_capacity) {
+        size_t known = s->slot_capacity;
+        if (!enf_array_reserve(s->edge_slot, s->slot_capacity, s->edge_capacity)) return -1;
+        memset(s->edge_slot + known, 0xff, (s->slot_capacity - known) * sizeof *s->edge_slot);
+    }
+    for (int32_t f = s->cell_facet[cell], next; f >= 0; f = next) {
+        const enf_share *facet = &s->facets[f];
+        next = facet->next[facet->cell[1] == cell];
+        if (!enf_array_reserve(s->shares, s->share_capacity, s->share_count + 1)) return -1;
+        s->shares[s->share_count++] = f;
+        int32_t h = facet->first, from = s->halves[h].vertex;
+        int sign = enf_subdivision_sign(s, from);
+        do {
+            behind |= sign < 0;
+            front |= sign > 0;
+            int32_t after = s->halves[h].next, to = s->halves[after].vertex;
+            int sign_to = enf_subdivision_sign(s, to);
+            if (sign * sign_to < 0 && !note_cut_edge(s, h, from, to)) return -1;
+            h = after;
+            from = to;
+            sign = sign_to;
+        } while (h != facet->first);
+    }
+    return behind && front;
+}
+
+int32_t enf_subdivision_cut_vertex(enf_subdivision *s, size_t i) {
+    enf_cut_edge *cut = &s->cut_edges[i];
+    if (cut->vertex >= 0) return cut->vertex;
+    enf_geometry *geometry = &s->geometry;
+    const enf_half *half = &s->halves[cut->half];
+    size_t vertices = (size_t)geometry->point_count + (size_t)geometry->crossing_count + 1;
+    if (!enf_array_reserve(s->vertex_sign, s->sign_capacity, vertices) ||
+        !enf_array_reserve(s->outline_at, s->outline_at_capacity, vertices)) {
+        return -1;
+    }
+    cut->vertex =
+        enf_geometry_cross(geometry, enf_subdivision_plane(s, half->facet), half->edge_plane, s->plane);
+    if (cut->vertex >= 0) s->vertex_sign[cut->vertex] = s->plane_mark * 4 + 1;
+    return cut->vertex;
+}
+
+void enf_subdivision_leave(enf_subdivision *s) {
+    int32_t first = INT32_MAX;
+    for (size_t i = 0; i < s->cut_edge_count; i++) {
+        if (s->cut_edges[i].vertex >= 0 && s->cut_edges[i].vertex < first) first = s->cut_edges[i].vertex;
+    }
+    if (first != INT32_MAX) s->geometry.crossing_count = first - s->geometry.point_count;
+}
+
+// ---------------------------------------------------------------------------------------------- cutting
+
+/// A new vertex on an edge: every facet there gets it.
+static bool split_edge(enf_subdivision *s, int32_t edge, int32_t from, int32_t vertex) {
+    if (!enf_array_reserve(s->edge_half, s->edge_capacity, s->edge_count + 1)) return false;
+    int32_t other = (int32_t)s->edge_count++, at = s->edge_half[edge];
+    s->edge_half[edge] = s->edge_half[other] = -1;
+    while (at >= 0) {
+        if (!enf_array_reserve(s->halves, s->half_capacity, s->half_count + 1)) return false;
+        int32_t added = (int32_t)s->half_count++;
+        enf_half *half = &s->halves[at], *second = &s->halves[added];
+        int32_t following = half->radial;
+        *second = *half;
+        second->vertex = vertex;
+        half->next = added;
+        // `edge` stays with the end it came from.
+        half->edge = half->vertex == from ? edge : other;
+        second->edge = half->vertex == from ? other : edge;
+        half->radial = s->edge_half[half->edge];
+        s->edge_half[half->edge] = at;
+        second->radial = s->edge_half[second->edge];
+        s->edge_half[second->edge] = added;
+        at = following;
+    }
+    return true;
+}
+
+static bool add_outline(enf_subdivision *s, int32_t from, int32_t to, int32_t edge, int32_t edge_plane) {
+    if (!enf_array_reserve(s->outline, s->outline_capacity, s->outline_count + 1)) return false;
+    s->outline_at[from] = (int32_t)s->outline_count;
+    s->outline[s->outline_count++] = (struct enf_outline){from, to, edge, edge_plane};
+    return true;
+}
+
+/// A facet's outline goes from the back of the plane to its front after `into`, and back again after `out`
+/// (both are halves that start on the plane). Cuts it there; returns the part in front, -1 without memory.
+static int32_t split_facet(enf_subdivision *s, int32_t f, int32_t into, int32_t out) {
+    if (!enf_array_reserve(s->halves, s->half_capacity, s->half_count + 2) ||
+        !enf_array_reserve(s->facets, s->facet_capacity, s->facet_count + 1) ||
+        !enf_array_reserve(s->edge_half, s->edge_capacity, s->edge_count + 1)) {
+        return -1;
+    }
+    int32_t g = (int32_t)s->facet_count++, edge = (int32_t)s->edge_count++;
+    int32_t behind = (int32_t)s->half_count, front = behind + 1;
+    s->half_count += 2;
+    enf_half *halves = s->halves;
+    int32_t last = into; // of the front part
+    while (halves[last].next != out) {
+        halves[last].facet = g;
+        last = halves[last].next;
+    }
+    halves[last].facet = g;
+    halves[last].next = front;
+    int32_t before = out; // of the part behind
+    while (halves[before].next != into) before = halves[before].next;
+    halves[before].next = behind;
+    halves[behind] = (enf_half){halves[into].vertex, out, edge, front, s->plane, f};
+    halves[front] = (enf_half){halves[out].vertex, into, edge, -1, s->plane, g};
+    s->edge_half[edge] = behind;
+    s->facets[g] = s->facets[f];
+    s->facets[f].first = behind;
+    s->facets[g].first = front;
+    return g;
+}
+
+/// What one facet of the cell adds to the outline of the cut, given that it lies behind (or its part does).
+static bool outline_from(enf_subdivision *s, int32_t half, int side, int32_t plane) {
+    const enf_half *h = &s->halves[half];
+    int32_t from = h->vertex, to = s->halves[h->next].vertex;
+    return side == 0 ? add_outline(s, to, from, h->edge, plane) : add_outline(s, from, to, h->edge, plane);
+}
+
+/// Puts a facet at the head of a cell's list.
+static void hang(enf_subdivision *s, int32_t f, int side, int32_t cell) {
+    s->facets[f].cell[side] = cell;
+    s->facets[f].next[side] = s->cell_facet[cell];
+    s->cell_facet[cell] = f;
+}
+
+/// Sorts one facet of the cell to the cell behind or the one in front, or cuts it and does both.
+static bool sort_facet(enf_subdivision *s, int32_t f, int32_t cell, int32_t ahead) {
+    int side = s->facets[f].cell[1] == cell;
+    int32_t into = -1, out = -1, touching = -1, first = s->facets[f].first, h = first;
+    bool behind = false, front = false;
+    do {
+        int32_t next = s->halves[h].next;
+        int sign = (s->vertex_sign[s->halves[h].vertex] & 3) - 1,
+            sign_to = (s->vertex_sign[s->halves[next].vertex] & 3) - 1;
+        behind |= sign < 0;
+        front |= sign > 0;
+        if (sign == 0 && sign_to > 0) into = h;
+        if (sign == 0 && sign_to < 0) out = h;
+        if (sign == 0 && sign_to == 0) touching = h;
+        h = next;
+    } while (h != first);
+    int32_t plane = enf_subdivision_plane(s, f);
+    if (behind && front) {
+        int32_t g = split_facet(s, f, into, out), across = s->facets[f].cell[1 - side];
+        if (g < 0) return false;
+        if (across >= 0) s->facets[f].next[1 - side] = g; // beside it in the list of the cell beyond
+        hang(s, f, side, cell);
+        hang(s, g, side, ahead);
+        return outline_from(s, s->facets[f].first, side, plane);
+    }
+    hang(s, f, side, front ? ahead : cell);
+    if (front || touching < 0) return true;
+    for (h = first;;) { // an edge on the plane may be several
+        int32_t next = s->halves[h].next;
+        if ((s->vertex_sign[s->halves[h].vertex] & 3) == 1 && (s->vertex_sign[s->halves[next].vertex] & 3) == 1 &&
+            !outline_from(s, h, side, plane)) {
+            return false;
+        }
+        h = next;
+        if (h == first) return true;
+    }
+}
+
+/// The facet between the two new cells.
+static bool add_cut_facet(enf_subdivision *s, int32_t node, int32_t cell, int32_t ahead) {
+    size_t count = s->outline_count;
+    if (!enf_array_reserve(s->halves, s->half_capacity, s->half_count + count) ||
+        !enf_array_reserve(s->facets, s->facet_capacity, s->facet_count + 1)) {
+        return false;
+    }
+    int32_t f = (int32_t)s->facet_count++, first = (int32_t)s->half_count;
+    s->facets[f] = (enf_share){.source = -1 - node, .first = first};
+    int32_t at = 0;
+    for (size_t i = 0; i < count; i++) {
+        const struct enf_outline *part = &s->outline[at];
+        int32_t half = (int32_t)s->half_count++;
+        s->halves[half] = (enf_half){.vertex = part->from,
+                                     .next = i + 1 < count ? half + 1 : first,
+                                     .edge = part->edge,
+                                     .radial = s->edge_half[part->edge],
+                                     .edge_plane = part->edge_plane,
+                                     .facet = f};
+        s->edge_half[part->edge] = half;
+        at = s->outline_at[part->to];
+    }
+    hang(s, f, 0, cell);
+    hang(s, f, 1, ahead);
+    return true;
+}
+
+static int32_t add_node(enf_subdivision *s, int32_t cell, int32_t ahead) {
+    if (!enf_array_reserve(s->node_plane, s->node_capacity, s->node_count + 1) ||
+        !enf_array_reserve(s->node_child, s->child_capacity, s->node_count + 1)) {
+        return -1;
+    }
+    int32_t node = (int32_t)s->node_count++, parent = s->cell_parent[cell];
+    s->node_plane[node] = s->plane;
+    s->node_child[node][0] = -1 - cell;
+    s->node_child[node][1] = -1 - ahead;
+    if (parent < 0) {
+        s->tetrahedron_root[-1 - parent] = node;
+    } else {
+        s->node_child[parent >> 1][parent & 1] = node;
+    }
+    s->cell_parent[cell] = 2 * node;
+    s->cell_parent[ahead] = 2 * node + 1;
+    return node;
+}
+
+int32_t enf_subdivision_cut(enf_subdivision *s, int32_t cell) {
+    if (!enf_array_reserve(s->cell_facet, s->cell_capacity, s->cell_count + 1) ||
+        !enf_array_reserve(s->cell_parent, s->parent_capacity, s->cell_count + 1)) {
+        return -1;
+    }
+    int32_t ahead = (int32_t)s->cell_count++, node = add_node(s, cell, ahead);
+    if (node < 0) return -1;
+    for (size_t i = 0; i < s->cut_edge_count; i++) {
+        int32_t vertex = enf_subdivision_cut_vertex(s, i);
+        if (vertex < 0 || !split_edge(s, s->cut_edges[i].edge, s->cut_edges[i].from, vertex)) return -1;
+    }
+    s->cell_facet[cell] = s->cell_facet[ahead] = -1;
+    s->outline_count = 0;
+    for (size_t i = 0; i < s->share_count; i++) {
+        if (!sort_facet(s, s->shares[i], cell, ahead)) return -1;
+    }
+    return add_cut_facet(s, node, cell, ahead) ? node : -1;
+}
