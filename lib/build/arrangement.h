@@ -27,7 +27,7 @@ typedef struct enf_arrangement {
     bool *polygon_flipped;    ///< the polygon's front is the plane's back
 
     enf_subdivision subdivision; ///< from split to connect; its geometry has the planes above
-    enf_hit *hits;               ///< all of a polygon's in a row
+    enf_hit *hits;
     size_t hit_count, hit_capacity;
 } enf_arrangement;
 

@@ -131,10 +131,8 @@ static bool cover_hits(finder *f, const enf_crew *crew, bool *stopped) {
             return false;
         }
         const enf_hit *hit = &arrangement->hits[i];
-        if ((i == 0 || hit->polygon != hit[-1].polygon) &&
-            !enf_polygon_lines_take(&f->lines, arrangement, hit->polygon)) {
-            return false;
-        }
+        if (i == 0 || hit->polygon != hit[-1].polygon)
+            enf_polygon_lines_take(&f->lines, arrangement, hit->polygon);
         int32_t source = source_index(f, hit->source);
         for (int32_t k = f->first[source]; k < f->first[source + 1]; k++) {
             if (!cover_facet(f, f->facets[k])) return false;

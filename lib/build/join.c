@@ -7,15 +7,16 @@
 
 #include <stdlib.h>
 
-/// The facet at an edge that belongs to `cell` and not to `other`: a half of it, or -1.
-static int32_t half_of(const enf_subdivision *s, int32_t edge, int32_t cell, int32_t other) {
+/// The facets at an edge that belong to one of two cells and not to both: a half of each, or -1.
+static void find_beside(const enf_subdivision *s, int32_t edge, const int32_t cell[2], int32_t beside[2]) {
+    beside[0] = beside[1] = -1;
     for (int32_t h = s->edge_half[edge]; h >= 0; h = s->halves[h].radial) {
         const enf_share *facet = &s->facets[s->halves[h].facet];
         if (facet->first < 0) continue;
-        if (facet->cell[0] == cell ? facet->cell[1] != other : facet->cell[1] == cell && facet->cell[0] != other)
-            return h;
+        bool first = facet->cell[0] == cell[0] || facet->cell[1] == cell[0],
+             second = facet->cell[0] == cell[1] || facet->cell[1] == cell[1];
+        if (first != second) beside[second] = h;
     }
-    return -1;
 }
 
 /// Does the facet of half `b` lie on the inner side of (or in) the plane of half `a`'s, which bounds `cell`?
@@ -31,14 +32,11 @@ static bool folds_in(enf_subdivision *s, int32_t a, int32_t b, int32_t cell) {
 /// Is the union of the two cells of facet f convex at its edges? Edges to another facet between the same two are
 /// inside the wall.
 static bool convex_around(enf_subdivision *s, int32_t f) {
-    int32_t behind = s->facets[f].cell[0], front = s->facets[f].cell[1];
+    int32_t cell[2] = {s->facets[f].cell[0], s->facets[f].cell[1]}, beside[2];
     int32_t first = s->facets[f].first, h = first;
     do {
-        int32_t a = half_of(s, s->halves[h].edge, behind, front);
-        if (a >= 0) {
-            int32_t b = half_of(s, s->halves[h].edge, front, behind);
-            if (b < 0 || !folds_in(s, a, b, behind)) return false;
-        }
+        find_beside(s, s->halves[h].edge, cell, beside);
+        if (beside[0] >= 0 && !folds_in(s, beside[0], beside[1], cell[0])) return false;
         h = s->halves[h].next;
     } while (h != first);
     return true;
@@ -85,20 +83,17 @@ static bool is_part(const enf_subdivision *s, int32_t cell) {
 }
 
 int32_t enf_subdivision_join(enf_subdivision *s, const uint8_t *covered, int32_t *into) {
-    int32_t joined = 0, before;
+    int32_t joined = 0;
     for (size_t c = 0; c < s->cell_count; c++) into[c] = (int32_t)c;
-    do {
-        before = joined;
-        for (size_t i = s->facet_count; i-- > 0;) {
-            enf_share *facet = &s->facets[i];
-            if (facet->first < 0 || covered[i] || !is_part(s, facet->cell[0]) || !is_part(s, facet->cell[1]))
-                continue;
-            if (!may_join(s, covered, (int32_t)i)) continue;
-            into[facet->cell[1]] = facet->cell[0];
-            join_cells(s, facet->cell[0], facet->cell[1]);
-            joined++;
-        }
-    } while (joined > before);
+    // The last cuts first: they divide the smallest cells. A second round would find one or two in a hundred more.
+    for (size_t i = s->facet_count; i-- > 0;) {
+        enf_share *facet = &s->facets[i];
+        if (facet->first < 0 || covered[i] || !is_part(s, facet->cell[0]) || !is_part(s, facet->cell[1])) continue;
+        if (!may_join(s, covered, (int32_t)i)) continue;
+        into[facet->cell[1]] = facet->cell[0];
+        join_cells(s, facet->cell[0], facet->cell[1]);
+        joined++;
+    }
     for (size_t c = 0; c < s->cell_count; c++) {
         int32_t root = into[c];
         while (into[root] != root) root = into[root];

@@ -9,11 +9,11 @@ enum { ENF_LINES_KNOWN_MAX = 32 }; ///< edges whose answers are kept; those of f
 
 typedef struct enf_polygon_lines {
     const enf_arrangement *arrangement;
-    int32_t polygon, count;    ///< count: its edges
-    const int32_t *corners;    ///< its points
-    int32_t first_plane;       ///< of edge 0
-    enf_plane_filter *filters; ///< of its edges
-    size_t filter_capacity;
+    int32_t polygon, count; ///< count: its edges
+    const int32_t *corners; ///< its points
+    int32_t first_plane;    ///< of edge 0
+    uint32_t filters_made;  ///< a bit for each of the first edges
+    enf_plane_filter filters[ENF_LINES_KNOWN_MAX];
 
     int32_t mark;
     struct enf_known_sides {
@@ -23,11 +23,11 @@ typedef struct enf_polygon_lines {
     size_t known_capacity;
 } enf_polygon_lines;
 
-/// From now on the lines are those of this polygon. False without memory.
-bool enf_polygon_lines_take(enf_polygon_lines *lines, const enf_arrangement *arrangement, int32_t polygon);
+/// From now on the lines are those of this polygon.
+void enf_polygon_lines_take(enf_polygon_lines *lines, const enf_arrangement *arrangement, int32_t polygon);
 void enf_polygon_lines_free(enf_polygon_lines *lines);
 
-/// Makes room for what is known of vertices below this number.
+/// Makes room for what is known of vertices below this number. False without memory.
 bool enf_polygon_lines_reserve(enf_polygon_lines *lines, size_t vertex_count);
 
 /// Forgets what is known of a vertex (its number will be given to another one).
@@ -35,20 +35,19 @@ static inline void enf_polygon_lines_forget(enf_polygon_lines *lines, int32_t ve
     lines->known[vertex].mark = 0;
 }
 
-/// -1: the vertex, which must lie in the polygon's plane or off it as a witness, is inside edge i's line (where
-/// the polygon is), +1: outside, 0: on it. Exact.
+/// Asks the geometry; see enf_polygon_lines_side.
+int enf_polygon_lines_find_side(enf_polygon_lines *lines, enf_geometry *geometry, int32_t vertex, int32_t i);
+
+/// -1: the vertex is inside edge i's line, where the polygon is; +1: outside; 0: on it. The line stands for a
+/// plane that is not parallel to the polygon, so vertices off the polygon's plane get an answer as well. Exact.
 static inline int enf_polygon_lines_side(enf_polygon_lines *lines, enf_geometry *geometry, int32_t vertex,
                                          int32_t i) {
-    struct enf_known_sides *known = &lines->known[vertex];
-    if (known->mark != lines->mark) {
-        known->mark = lines->mark;
-        known->sides = 0;
+    const struct enf_known_sides *known = &lines->known[vertex];
+    if (i < ENF_LINES_KNOWN_MAX && known->mark == lines->mark) {
+        unsigned side = (unsigned)(known->sides >> (2 * (unsigned)i)) & 3;
+        if (side) return (int)side - 2;
     }
-    unsigned shift = 2 * (unsigned)i;
-    if (i < ENF_LINES_KNOWN_MAX && (known->sides >> shift & 3)) return (int)(known->sides >> shift & 3) - 2;
-    int side = enf_geometry_side_by(geometry, vertex, lines->first_plane + i, &lines->filters[i]);
-    if (i < ENF_LINES_KNOWN_MAX) known->sides |= (uint64_t)(unsigned)(side + 2) << shift;
-    return side;
+    return enf_polygon_lines_find_side(lines, geometry, vertex, i);
 }
 
 #endif

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Most polygons of a finely drawn world are facets of the triangulation already, or tiled by a few: these are
+// looked up. Others are flooded: the tetrahedra that a polygon's inside meets are connected through facets, so a
+// walk from one of its corners that enters every neighbour it may meet finds them all, in time proportional to
+// what it finds. Polygons go plane by plane, so that a point is held against each plane once.
+#include "build/flood.h"
+
+#include "base/array.h"
+#include "base/exact.h"
+#include "build/polygon_lines.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK = 512 }; ///< polygons a job
+
+typedef struct found {
+    int32_t tetrahedron;
+    enf_candidate candidate;
+} found;
+
+typedef struct flood_block {
+    found *found;
+    size_t count, capacity;
+    enf_hit *hits;
+    size_t hit_count, hit_capacity;
+} flood_block;
+
+typedef struct flooder {
+    enf_geometry geometry; ///< for its counters
+    enf_polygon_lines lines;
+    int32_t plane, plane_mark;
+    enf_plane_filter filter;
+    int32_t *point_sign; ///< per point: plane_mark * 4 + sign + 1
+    int32_t *stamp;      ///< per tetrahedron: the last polygon + 1 that looked at it
+    int32_t *stack;
+    size_t stack_capacity;
+    bool failed;
+} flooder;
+
+typedef struct flood {
+    const enf_arrangement *arrangement;
+    const int32_t *order; ///< polygons by plane
+    flood_block *blocks;
+    flooder *flooders;
+} flood;
+
+void enf_candidates_free(enf_candidates *candidates) {
+    free(candidates->offset);
+    free(candidates->candidates);
+    memset(candidates, 0, sizeof *candidates);
+}
+
+static void add_hit(flooder *w, flood_block *block, int32_t facet) {
+    if (!enf_array_reserve(block->hits, block->hit_capacity, block->hit_count + 1)) {
+        w->failed = true;
+        return;
+    }
+    block->hits[block->hit_count++] = (enf_hit){w->lines.polygon, facet};
+}
+
+static void add_found(flooder *w, flood_block *block, int32_t t, uint32_t lines) {
+    if (!enf_array_reserve(block->found, block->capacity, block->count + 1)) {
+        w->failed = true;
+        return;
+    }
+    block->found[block->count++] = (found){t, {w->lines.polygon, lines}};
+}
+
+// ---------------------------------------------------------------------------------------------- contacts
+
+typedef enum contact {
+    APART,   ///< the polygon's inside stays away
+    TOUCHES, ///< it may meet the tetrahedron's boundary, not its inside
+    COVERS,  ///< it may cover a facet
+    ACROSS,  ///< it may go through
+} contact;
+
+static int side_of_plane(flooder *w, int32_t point) {
+    int32_t known = w->point_sign[point];
+    if (known >> 2 == w->plane_mark) return (known & 3) - 1;
+    int sign = enf_geometry_side_by(&w->geometry, point, w->plane, &w->filter);
+    w->point_sign[point] = w->plane_mark * 4 + sign + 1;
+    return sign;
+}
+
+/// How the polygon's inside meets a tetrahedron. `sign` receives the sides of its plane on which the corners
+/// lie.
+static contact meets(flooder *w, const int32_t corner[4], int sign[4]) {
+    int behind = 0, front = 0;
+    for (int k = 0; k < 4; k++) {
+        sign[k] = side_of_plane(w, corner[k]);
+        behind += sign[k] < 0;
+        front += sign[k] > 0;
+    }
+    if (behind == 4 || front == 4) return APART;
+    bool across = behind && front;
+    // Some part of the tetrahedron that is in the plane must be inside each of the polygon's lines.
+    for (int32_t i = 0; i < w->lines.count; i++) {
+        bool inside = false;
+        for (int k = 0; k < 4 && !inside; k++) {
+            inside = (across || sign[k] == 0) &&
+                     enf_polygon_lines_side(&w->lines, &w->geometry, corner[k], i) < 0;
+        }
+        if (!inside) return APART;
+    }
+    return across ? ACROSS : behind + front == 1 ? COVERS : TOUCHES;
+}
+
+/// Is a facet of the tetrahedron between it and the polygon?
+static bool facet_separates(const flooder *w, const enf_tet_mesh *tets, int32_t t) {
+    const double *points = w->geometry.points;
+    for (int k = 0; k < 4; k++) {
+        int32_t facet = tets->facets[t][k];
+        const int32_t *corner = tets->facet_corners[facet];
+        int inner = tets->facet_sides[facet][1] == t ? 1 : -1;
+        bool outside = true;
+        for (int32_t i = 0; i < w->lines.count && outside; i++) {
+            int32_t point = w->lines.corners[i];
+            if (point == corner[0] || point == corner[1] || point == corner[2]) continue;
+            outside = enf_points_orient(points + 3 * (size_t)corner[0], points + 3 * (size_t)corner[1],
+                                        points + 3 * (size_t)corner[2], points + 3 * (size_t)point) != inner;
+        }
+        if (outside) return true;
+    }
+    return false;
+}
+
+/// The polygon's lines that do not have all of the tetrahedron inside.
+static uint32_t lines_near(flooder *w, const int32_t corner[4]) {
+    uint32_t near = 0;
+    for (int32_t i = 0; i < w->lines.count && i < ENF_LINES_KNOWN_MAX; i++) {
+        for (int k = 0; k < 4; k++) {
+            if (enf_polygon_lines_side(&w->lines, &w->geometry, corner[k], i) <= 0) continue;
+            near |= UINT32_C(1) << i;
+            break;
+        }
+    }
+    return near;
+}
+
+static bool has_corner(const int32_t corner[4], int32_t point) {
+    return corner[0] == point || corner[1] == point || corner[2] == point || corner[3] == point;
+}
+
+// ---------------------------------------------------------------------------------------------- one polygon
+
+static void take_tetrahedron(flooder *w, flood_block *block, const enf_tet_mesh *tets, int32_t t, contact how,
+                             const int sign[4]) {
+    if (how == ACROSS && !facet_separates(w, tets, t))
+        add_found(w, block, t, lines_near(w, tets->corners[t]));
+    if (how == COVERS) {
+        int k = 0;
+        while (sign[k] == 0) k++;
+        const int32_t facet = tets->facets[t][k], *sides = tets->facet_sides[facet];
+        if (sides[0] == t || sides[0] < 0) add_hit(w, block, facet);
+    }
+}
+
+/// From a tetrahedron at the polygon's first corner, around that corner and through all that the polygon may
+/// meet.
+static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *tets) {
+    const int32_t mark = w->lines.polygon + 1, corner = w->lines.corners[0];
+    size_t depth = 0;
+    if (!enf_array_reserve(w->stack, w->stack_capacity, 1)) w->failed = true;
+    if (w->failed) return;
+    w->stack[depth++] = tets->point_tetrahedron[corner];
+    w->stamp[w->stack[0]] = mark;
+    while (depth > 0 && !w->failed) {
+        int32_t t = w->stack[--depth];
+        int sign[4];
+        contact how = meets(w, tets->corners[t], sign);
+        take_tetrahedron(w, block, tets, t, how, sign);
+        if (how == APART && !has_corner(tets->corners[t], corner)) continue;
+        if (!enf_array_reserve(w->stack, w->stack_capacity, depth + 4)) {
+            w->failed = true;
+            return;
+        }
+        for (int k = 0; k < 4; k++) {
+            int one = sign[(k + 1) & 3], two = sign[(k + 2) & 3], three = sign[(k + 3) & 3];
+            if (one != 0 && one == two && two == three) continue; // the facet is off the plane
+            const int32_t *sides = tets->facet_sides[tets->facets[t][k]];
+            int32_t next = sides[0] == t ? sides[1] : sides[0];
+            if (next < 0 || w->stamp[next] == mark) continue;
+            w->stamp[next] = mark;
+            w->stack[depth++] = next;
+        }
+    }
+}
+
+enum { FACETED_CORNERS_MAX = 16 }; ///< polygons with more are flooded at once
+
+/// The facets that tile the polygon, where the triangulation carries it already: facets do not overlap, so
+/// there is at most one way to triangulate it with them, and the facet at each edge is found by trying all
+/// apexes. Returns their number (corners - 2), or 0 if they do not tile it.
+static int tiling_facets(const enf_tet_mesh *tets, const int32_t *corner, int corners, int32_t *facets) {
+    int count = 0;
+    if (corners > FACETED_CORNERS_MAX) return 0;
+    struct {
+        int first, last;
+    } stack[FACETED_CORNERS_MAX] = {{0, corners - 1}}; // chains of corners still to be closed by a facet
+    for (int depth = 1; depth > 0;) {
+        int first = stack[--depth].first, last = stack[depth].last, apex = first + 1;
+        int32_t facet = -1;
+        for (; apex < last; apex++) {
+            facet = enf_tet_mesh_facet(tets, corner[first], corner[apex], corner[last]);
+            if (facet >= 0) break;
+        }
+        if (facet < 0) return 0;
+        facets[count++] = facet;
+        if (apex > first + 1) {
+            stack[depth].first = first;
+            stack[depth++].last = apex;
+        }
+        if (last > apex + 1) {
+            stack[depth].first = apex;
+            stack[depth++].last = last;
+        }
+    }
+    return count;
+}
+
+static void take_polygon(flooder *w, flood_block *block, const enf_arrangement *arrangement, int32_t polygon) {
+    int32_t facets[FACETED_CORNERS_MAX], plane = arrangement->polygon_plane[polygon];
+    enf_polygon_lines_take(&w->lines, arrangement, polygon);
+    int tiling = tiling_facets(&arrangement->tets, w->lines.corners, w->lines.count, facets);
+    for (int i = 0; i < tiling; i++) add_hit(w, block, facets[i]); // it crosses nothing
+    if (tiling) return;
+    if (plane != w->plane) {
+        w->plane = plane;
+        w->plane_mark++;
+        enf_geometry_make_filter(&w->geometry, plane, &w->filter);
+    }
+    flood_polygon(w, block, &arrangement->tets);
+}
+
+// ---------------------------------------------------------------------------------------------- all of them
+
+static void flood_job(void *user, int32_t index, int thread) {
+    flood *all = user;
+    flooder *w = &all->flooders[thread];
+    size_t end = ((size_t)index + 1) * BLOCK;
+    if (end > all->arrangement->mesh->polygon_count) end = all->arrangement->mesh->polygon_count;
+    for (size_t i = (size_t)index * BLOCK; i < end && !w->failed; i++)
+        take_polygon(w, &all->blocks[index], all->arrangement, all->order[i]);
+}
+
+/// Polygons sorted by plane (free() it), or null without memory.
+static int32_t *sort_by_plane(const enf_arrangement *arrangement) {
+    size_t count = arrangement->mesh->polygon_count;
+    int32_t first = arrangement->tets.facet_count;
+    size_t planes = (size_t)(arrangement->edge_plane_first - first);
+    int32_t *order = enf_array_new(count, sizeof *order), *next = enf_array_zeroed(planes + 1, sizeof *next);
+    if (!order || !next) {
+        free(order);
+        free(next);
+        return NULL;
+    }
+    for (size_t p = 0; p < count; p++) next[arrangement->polygon_plane[p] - first + 1]++;
+    for (size_t i = 0; i < planes; i++) next[i + 1] += next[i];
+    for (size_t p = 0; p < count; p++) order[next[arrangement->polygon_plane[p] - first]++] = (int32_t)p;
+    free(next);
+    return order;
+}
+
+/// Candidates by tetrahedron, and all hits in a row; both in the order of the blocks.
+static bool join_blocks(enf_candidates *candidates, enf_arrangement *arrangement, const flood_block *blocks,
+                        int32_t block_count) {
+    size_t tets = (size_t)arrangement->tets.count, total = 0, hits = 0;
+    for (int32_t b = 0; b < block_count; b++) {
+        total += blocks[b].count;
+        hits += blocks[b].hit_count;
+    }
+    if (total > INT32_MAX) return false;
+    int32_t *next = candidates->offset = enf_array_zeroed(tets + 2, sizeof *next);
+    candidates->candidates = enf_array_new(total, sizeof *candidates->candidates);
+    if (!next || !candidates->candidates ||
+        !enf_array_reserve(arrangement->hits, arrangement->hit_capacity, hits + 1)) {
+        return false;
+    }
+    for (int32_t b = 0; b < block_count; b++) {
+        for (size_t i = 0; i < blocks[b].count; i++) next[blocks[b].found[i].tetrahedron + 2]++;
+        if (blocks[b].hit_count == 0) continue;
+        memcpy(arrangement->hits + arrangement->hit_count, blocks[b].hits,
+               blocks[b].hit_count * sizeof *arrangement->hits);
+        arrangement->hit_count += blocks[b].hit_count;
+    }
+    for (size_t t = 0; t < tets; t++) next[t + 2] += next[t + 1];
+    for (int32_t b = 0; b < block_count; b++) {
+        for (size_t i = 0; i < blocks[b].count; i++) {
+            const found *f = &blocks[b].found[i];
+            candidates->candidates[next[f->tetrahedron + 1]++] = f->candidate;
+        }
+    }
+    return true;
+}
+
+static bool start_flooder(flooder *w, const enf_arrangement *arrangement) {
+    size_t points = arrangement->mesh->point_count;
+    w->geometry = arrangement->geometry;
+    w->geometry.decided_by_filter = w->geometry.decided_exactly = 0;
+    w->plane = -1;
+    w->stamp = enf_array_zeroed((size_t)arrangement->tets.count, sizeof *w->stamp);
+    w->point_sign = enf_array_zeroed(points, sizeof *w->point_sign);
+    return w->stamp && w->point_sign && enf_polygon_lines_reserve(&w->lines, points);
+}
+
+static void end_flooder(flooder *w, enf_arrangement *arrangement) {
+    arrangement->geometry.decided_by_filter += w->geometry.decided_by_filter;
+    arrangement->geometry.decided_exactly += w->geometry.decided_exactly;
+    free(w->stamp);
+    free(w->point_sign);
+    free(w->stack);
+    enf_polygon_lines_free(&w->lines);
+}
+
+bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangement, const enf_crew *crew,
+                         bool *stopped) {
+    memset(candidates, 0, sizeof *candidates);
+    *stopped = false;
+    int threads = crew->threads;
+    int32_t block_count = (int32_t)((arrangement->mesh->polygon_count + BLOCK - 1) / BLOCK);
+    int32_t *order = sort_by_plane(arrangement);
+    flood all = {.arrangement = arrangement,
+                 .order = order,
+                 .blocks = enf_array_zeroed((size_t)block_count, sizeof *all.blocks),
+                 .flooders = enf_array_zeroed((size_t)threads, sizeof *all.flooders)};
+    bool good = order && all.blocks && all.flooders;
+    for (int w = 0; good && w < threads; w++) good = start_flooder(&all.flooders[w], arrangement);
+    if (good) {
+        *stopped = !enf_parallel_for(crew, block_count, flood_job, &all);
+        for (int w = 0; w < threads; w++) good = good && !all.flooders[w].failed;
+        good = good && !*stopped && join_blocks(candidates, arrangement, all.blocks, block_count);
+    }
+    for (int w = 0; all.flooders && w < threads; w++) end_flooder(&all.flooders[w], arrangement);
+    for (int32_t b = 0; all.blocks && b < block_count; b++) {
+        free(all.blocks[b].found);
+        free(all.blocks[b].hits);
+    }
+    free(all.blocks);
+    free(all.flooders);
+    free(order);
+    return good;
+}
