@@ -33,21 +33,23 @@ static bool number_cells(connector *c) {
     int32_t *into = c->cell_number = enf_array_new(cells, sizeof *into);
     c->facet_number = enf_array_new(facets, sizeof *c->facet_number);
     if (!into || !c->facet_number) return false;
-    int32_t joined = enf_subdivision_join(space, c->covers.covered, into);
-    if (joined < 0) return false;
-    c->complex->cells_joined = joined;
+    uint8_t *part = enf_array_new(cells, sizeof *part); // of a tetrahedron that was cut
+    if (!part) return false;
+    for (size_t i = 0; i < cells; i++) part[i] = space->cell_parent[i] >= 0;
+    for (size_t i = 0; i < cells; i++) into[i] = (int32_t)i;
+    enf_subdivision_join(space, c->covers.covered, part, into);
+    free(part);
     int32_t count = 0;
     for (size_t i = 0; i < facets; i++) c->facet_number[i] = space->facets[i].first >= 0 ? count++ : -1;
     c->complex->facet_count = count;
-    // A cell that went into another may have the lower number: first those that stay.
-    count = 0;
+    count = 0; // a cell that went into another may have the lower number: first those that stay
     for (size_t i = 0; i < cells; i++) {
-        if (into[i] == (int32_t)i) into[i] = -1 - count++;
+        if (into[i] == (int32_t)i && space->cell_facet[i] >= 0) into[i] = -1 - count++;
     }
     for (size_t i = 0; i < cells; i++) {
-        if (into[i] >= 0) into[i] = into[into[i]]; // roots hold -1 - number already
+        if (into[i] >= 0 && into[into[i]] < 0) into[i] = into[into[i]]; // roots hold -1 - number already
     }
-    for (size_t i = 0; i < cells; i++) into[i] = -1 - into[i];
+    for (size_t i = 0; i < cells; i++) into[i] = -1 - into[i]; // cells gone before the cuts: nonsense, unused
     c->complex->cell_count = count;
     return true;
 }

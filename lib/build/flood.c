@@ -29,9 +29,8 @@ typedef struct flood_block {
 typedef struct flooder {
     enf_geometry geometry; ///< for its counters
     enf_polygon_lines lines;
-    int32_t plane, plane_mark;
+    int32_t rank, plane, plane_mark;
     enf_plane_filter filter;
-    int32_t *point_sign; ///< per point: plane_mark * 4 + sign + 1
     int32_t *stamp;      ///< per tetrahedron: the last polygon + 1 that looked at it
     int32_t *stack;
     size_t stack_capacity;
@@ -48,6 +47,7 @@ typedef struct flood {
 void enf_candidates_free(enf_candidates *candidates) {
     free(candidates->offset);
     free(candidates->candidates);
+    free(candidates->order);
     memset(candidates, 0, sizeof *candidates);
 }
 
@@ -64,7 +64,7 @@ static void add_found(flooder *w, flood_block *block, int32_t t, uint32_t lines)
         w->failed = true;
         return;
     }
-    block->found[block->count++] = (found){t, {w->lines.polygon, lines}};
+    block->found[block->count++] = (found){t, {w->rank, lines}};
 }
 
 // ---------------------------------------------------------------------------------------------- contacts
@@ -77,10 +77,10 @@ typedef enum contact {
 } contact;
 
 static int side_of_plane(flooder *w, int32_t point) {
-    int32_t known = w->point_sign[point];
-    if (known >> 2 == w->plane_mark) return (known & 3) - 1;
+    int32_t *known = &w->lines.known[point].plane_sign; // plane_mark * 4 + sign + 1
+    if (*known >> 2 == w->plane_mark) return (*known & 3) - 1;
     int sign = enf_geometry_side_by(&w->geometry, point, w->plane, &w->filter);
-    w->point_sign[point] = w->plane_mark * 4 + sign + 1;
+    *known = w->plane_mark * 4 + sign + 1;
     return sign;
 }
 
@@ -139,6 +139,28 @@ static uint32_t lines_near(flooder *w, const int32_t corner[4]) {
     return near;
 }
 
+/// Can the polygon's inside reach through the facet opposite corner k? Some part of the facet that is in the plane
+/// must be inside each of the polygon's lines.
+static bool reaches_through(flooder *w, const int32_t corner[4], const int sign[4], int k) {
+    int behind = 0, front = 0;
+    for (int i = 1; i < 4; i++) {
+        behind += sign[(k + i) & 3] < 0;
+        front += sign[(k + i) & 3] > 0;
+    }
+    if (behind == 3 || front == 3) return false;
+    bool across = behind && front;
+    for (int32_t i = 0; i < w->lines.count; i++) {
+        bool inside = false;
+        for (int j = 1; j < 4 && !inside; j++) {
+            int at = (k + j) & 3;
+            inside = (across || sign[at] == 0) &&
+                     enf_polygon_lines_side(&w->lines, &w->geometry, corner[at], i) < 0;
+        }
+        if (!inside) return false;
+    }
+    return true;
+}
+
 static bool has_corner(const int32_t corner[4], int32_t point) {
     return corner[0] == point || corner[1] == point || corner[2] == point || corner[3] == point;
 }
@@ -171,14 +193,15 @@ static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *te
         int sign[4];
         contact how = meets(w, tets->corners[t], sign);
         take_tetrahedron(w, block, tets, t, how, sign);
-        if (how == APART && !has_corner(tets->corners[t], corner)) continue;
+        bool around = has_corner(tets->corners[t], corner);
+        if (how == APART && !around) continue;
         if (!enf_array_reserve(w->stack, w->stack_capacity, depth + 4)) {
             w->failed = true;
             return;
         }
         for (int k = 0; k < 4; k++) {
-            int one = sign[(k + 1) & 3], two = sign[(k + 2) & 3], three = sign[(k + 3) & 3];
-            if (one != 0 && one == two && two == three) continue; // the facet is off the plane
+            bool star = around && tets->corners[t][k] != corner;
+            if (!star && !reaches_through(w, tets->corners[t], sign, k)) continue;
             const int32_t *sides = tets->facet_sides[tets->facets[t][k]];
             int32_t next = sides[0] == t ? sides[1] : sides[0];
             if (next < 0 || w->stamp[next] == mark) continue;
@@ -242,7 +265,7 @@ static void flood_job(void *user, int32_t index, int thread) {
     size_t end = ((size_t)index + 1) * BLOCK;
     if (end > all->arrangement->mesh->polygon_count) end = all->arrangement->mesh->polygon_count;
     for (size_t i = (size_t)index * BLOCK; i < end && !w->failed; i++)
-        take_polygon(w, &all->blocks[index], all->arrangement, all->order[i]);
+        take_polygon(w, &all->blocks[index], all->arrangement, all->order[w->rank = (int32_t)i]);
 }
 
 /// Polygons sorted by plane (free() it), or null without memory.
@@ -301,15 +324,13 @@ static bool start_flooder(flooder *w, const enf_arrangement *arrangement) {
     w->geometry.decided_by_filter = w->geometry.decided_exactly = 0;
     w->plane = -1;
     w->stamp = enf_array_zeroed((size_t)arrangement->tets.count, sizeof *w->stamp);
-    w->point_sign = enf_array_zeroed(points, sizeof *w->point_sign);
-    return w->stamp && w->point_sign && enf_polygon_lines_reserve(&w->lines, points);
+    return w->stamp && enf_polygon_lines_reserve(&w->lines, points);
 }
 
 static void end_flooder(flooder *w, enf_arrangement *arrangement) {
     arrangement->geometry.decided_by_filter += w->geometry.decided_by_filter;
     arrangement->geometry.decided_exactly += w->geometry.decided_exactly;
     free(w->stamp);
-    free(w->point_sign);
     free(w->stack);
     enf_polygon_lines_free(&w->lines);
 }
@@ -320,7 +341,7 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
     *stopped = false;
     int threads = crew->threads;
     int32_t block_count = (int32_t)((arrangement->mesh->polygon_count + BLOCK - 1) / BLOCK);
-    int32_t *order = sort_by_plane(arrangement);
+    const int32_t *order = candidates->order = sort_by_plane(arrangement);
     flood all = {.arrangement = arrangement,
                  .order = order,
                  .blocks = enf_array_zeroed((size_t)block_count, sizeof *all.blocks),
@@ -339,6 +360,5 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
     }
     free(all.blocks);
     free(all.flooders);
-    free(order);
     return good;
 }

@@ -12,7 +12,6 @@ static void find_beside(const enf_subdivision *s, int32_t edge, const int32_t ce
     beside[0] = beside[1] = -1;
     for (int32_t h = s->edge_half[edge]; h >= 0; h = s->halves[h].radial) {
         const enf_share *facet = &s->facets[s->halves[h].facet];
-        if (facet->first < 0) continue;
         bool first = facet->cell[0] == cell[0] || facet->cell[1] == cell[0],
              second = facet->cell[0] == cell[1] || facet->cell[1] == cell[1];
         if (first != second) beside[second] = h;
@@ -56,6 +55,18 @@ static bool may_join(enf_subdivision *s, const uint8_t *covered, int32_t f) {
     return true;
 }
 
+/// Takes a facet out of the lists at its edges.
+static void remove_facet(enf_subdivision *s, int32_t f) {
+    int32_t first = s->facets[f].first, h = first;
+    do {
+        int32_t *link = &s->edge_half[s->halves[h].edge];
+        while (*link != h) link = &s->halves[*link].radial;
+        *link = s->halves[h].radial;
+        h = s->halves[h].next;
+    } while (h != first);
+    s->facets[f].first = -1;
+}
+
 /// `front` goes into `behind`; the facets between them go.
 static void join_cells(enf_subdivision *s, int32_t behind, int32_t front) {
     int32_t kept = -1;
@@ -66,7 +77,7 @@ static void join_cells(enf_subdivision *s, int32_t behind, int32_t front) {
             int side = facet->cell[1] == cell;
             next = facet->next[side];
             if (facet->cell[1 - side] == other) {
-                if (k == 1) facet->first = -1; // the second time round: still linked for the first
+                if (k == 1) remove_facet(s, g);
                 continue;
             }
             facet->cell[side] = behind;
@@ -78,17 +89,13 @@ static void join_cells(enf_subdivision *s, int32_t behind, int32_t front) {
     s->cell_facet[front] = -1;
 }
 
-static bool is_part(const enf_subdivision *s, int32_t cell) {
-    return cell >= 0 && s->cell_parent[cell] >= 0;
-}
-
-int32_t enf_subdivision_join(enf_subdivision *s, const uint8_t *covered, int32_t *into) {
+int32_t enf_subdivision_join(enf_subdivision *s, const uint8_t *covered, const uint8_t *may, int32_t *into) {
     int32_t joined = 0;
-    for (size_t c = 0; c < s->cell_count; c++) into[c] = (int32_t)c;
     // The last cuts first: they divide the smallest cells. A second round would find one or two in a hundred more.
     for (size_t i = s->facet_count; i-- > 0;) {
         enf_share *facet = &s->facets[i];
-        if (facet->first < 0 || covered[i] || !is_part(s, facet->cell[0]) || !is_part(s, facet->cell[1])) continue;
+        if (facet->first < 0 || covered[i] || facet->cell[0] < 0 || facet->cell[1] < 0) continue;
+        if (!may[facet->cell[0]] || !may[facet->cell[1]]) continue;
         if (!may_join(s, covered, (int32_t)i)) continue;
         into[facet->cell[1]] = facet->cell[0];
         join_cells(s, facet->cell[0], facet->cell[1]);

@@ -5,10 +5,11 @@
 
 #include "build/subdivision.h"
 
-/// Joins cells across open facets (`covered` has a byte per facet) as long as the union is convex, exactly. Only
-/// parts of cut tetrahedra are joined; whole ones stay as they are. Facets between joined cells are gone
-/// afterwards (first = -1), and so are cells that went into another: into[c] is the cell that took cell c, or
-/// c itself. Returns how many went, -1 without memory.
-int32_t enf_subdivision_join(enf_subdivision *subdivision, const uint8_t *covered, int32_t *into);
+/// Joins cells across open facets as long as the union is convex, exactly: where `covered` (a byte per facet) is 0
+/// and `may` (a byte per cell) is set for both cells. Facets between joined cells are gone afterwards
+/// (first = -1), and so are cells that went into another (cell_facet = -1): into[c] becomes the cell that took
+/// cell c, or c itself. Returns how many went.
+int32_t enf_subdivision_join(enf_subdivision *subdivision, const uint8_t *covered, const uint8_t *may,
+                             int32_t *into);
 
 #endif

@@ -18,7 +18,8 @@ typedef struct enf_polygon_lines {
     int32_t mark;
     struct enf_known_sides {
         int32_t mark;
-        uint64_t sides; ///< two bits an edge: 0 unknown, else sign + 2
+        int32_t plane_sign; ///< the owner's: see flood.c
+        uint64_t sides;     ///< two bits an edge: 0 unknown, else sign + 2
     } *known;           ///< per vertex
     size_t known_capacity;
 } enf_polygon_lines;

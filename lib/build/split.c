@@ -9,6 +9,7 @@
 
 #include "base/array.h"
 #include "build/flood.h"
+#include "build/join.h"
 #include "build/polygon_lines.h"
 
 #include <stdlib.h>
@@ -20,6 +21,8 @@ typedef struct cutter {
     enf_polygon_lines lines;
     uint32_t lines_near; ///< see enf_candidate
     int32_t *refs;       ///< of the tree: nodes and cells
+    enf_candidate *candidates;
+    size_t candidate_capacity;
     size_t ref_capacity;
     bool failed; ///< out of memory
 } cutter;
@@ -138,25 +141,93 @@ static void cut_tetrahedron(cutter *c, int32_t t) {
 
 // ---------------------------------------------------------------------------------------------- all of them
 
+/// Tetrahedra that will be cut are joined first where that makes a convex cell: a polygon then cuts one cell, not
+/// several. Returns the cell that each tetrahedron is in.
+static int32_t *join_tetrahedra(cutter *c, const enf_candidates *candidates) {
+    const enf_arrangement *arrangement = c->arrangement;
+    size_t count = (size_t)arrangement->tets.count;
+    int32_t *into = enf_array_new(count, sizeof *into);
+    uint8_t *may = enf_array_new(count, sizeof *may),
+            *covered = enf_array_zeroed(c->space->facet_count, sizeof *covered);
+    if (into && may && covered) {
+        for (size_t t = 0; t < count; t++) {
+            into[t] = (int32_t)t;
+            may[t] = candidates->offset[t] < candidates->offset[t + 1];
+        }
+        for (size_t i = 0; i < arrangement->hit_count; i++) covered[arrangement->hits[i].source] = 1;
+        if (!getenv("NOPRE")) enf_subdivision_join(c->space, covered, may, into);
+    } else {
+        c->failed = true;
+    }
+    free(may);
+    free(covered);
+    return into;
+}
+
+static int compare_ranks(const void *a, const void *b) {
+    const enf_candidate *x = a, *y = b;
+    return (x->rank > y->rank) - (x->rank < y->rank);
+}
+
+/// The candidates of the tetrahedra in a cell, each once. `next` lists them, from the one that gave the cell its
+/// number.
+static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t *next, int32_t first) {
+    size_t count = 0, kept = 0;
+    for (int32_t t = first; t >= 0; t = next[t]) {
+        size_t more = (size_t)(candidates->offset[t + 1] - candidates->offset[t]);
+        if (!enf_array_reserve(c->candidates, c->candidate_capacity, count + more)) {
+            c->failed = true;
+            return 0;
+        }
+        memcpy(c->candidates + count, candidates->candidates + candidates->offset[t],
+               more * sizeof *c->candidates);
+        count += more;
+    }
+    if (next[first] < 0) return count;
+    qsort(c->candidates, count, sizeof *c->candidates, compare_ranks);
+    for (size_t i = 0; i < count; i++) {
+        if (kept > 0 && c->candidates[kept - 1].rank == c->candidates[i].rank) {
+            c->candidates[kept - 1].lines |= c->candidates[i].lines;
+        } else {
+            c->candidates[kept++] = c->candidates[i];
+        }
+    }
+    return kept;
+}
+
 enum { WATCH_EVERY = 4096 };
 
 /// All tetrahedra in turn; false if stopped.
 static bool cut_all(cutter *c, const enf_candidates *candidates, const enf_crew *crew) {
     int32_t count = c->arrangement->tets.count;
-    for (int32_t t = 0; t < count && !c->failed; t++) {
-        if (t % WATCH_EVERY == 0 && crew->watch && !crew->watch(crew->user, (double)t / (double)count))
-            return false;
-        for (int32_t i = candidates->offset[t]; i < candidates->offset[t + 1] && !c->failed; i++) {
-            int32_t polygon = candidates->candidates[i].polygon;
+    int32_t *into = join_tetrahedra(c, candidates), *next = enf_array_new((size_t)count, sizeof *next);
+    if (!next) c->failed = true;
+    for (int32_t t = 0; !c->failed && t < count; t++) next[t] = -1;
+    for (int32_t t = count - 1; !c->failed && t >= 0; t--) {
+        if (into[t] == t) continue;
+        next[t] = next[into[t]];
+        next[into[t]] = t;
+    }
+    bool stopped = false;
+    for (int32_t t = 0; t < count && !c->failed && !stopped; t++) {
+        stopped = t % WATCH_EVERY == 0 && crew->watch && !crew->watch(crew->user, (double)t / (double)count);
+        if (into[t] != t) continue;
+        size_t polygons = gather(c, candidates, next, t);
+        c->space->plane = -1;
+        for (size_t i = 0; i < polygons && !c->failed; i++) {
+            int32_t polygon = candidates->order[c->candidates[i].rank];
             int32_t plane = c->arrangement->polygon_plane[polygon];
-            if (i == candidates->offset[t] || plane != c->space->plane)
-                enf_subdivision_take_plane(c->space, plane);
+            if (plane != c->space->plane) enf_subdivision_take_plane(c->space, plane);
             enf_polygon_lines_take(&c->lines, c->arrangement, polygon);
-            c->lines_near = candidates->candidates[i].lines;
+            c->lines_near = c->candidates[i].lines;
             cut_tetrahedron(c, t);
         }
     }
-    return true;
+    for (int32_t t = 0; t < count && !c->failed; t++)
+        c->space->tetrahedron_root[t] = c->space->tetrahedron_root[into[t]];
+    free(into);
+    free(next);
+    return !stopped;
 }
 
 enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
@@ -170,6 +241,7 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     good = good && !c.failed;
     enf_candidates_free(&candidates);
     free(c.refs);
+    free(c.candidates);
     enf_polygon_lines_free(&c.lines);
     if (stopped) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
     if (!good) return enf_fail_memory(error, "the fine cells");
