@@ -19,6 +19,12 @@ typedef struct found {
     enf_candidate candidate;
 } found;
 
+/// A tetrahedron as the walk sees it, together in memory.
+typedef struct place {
+    int32_t corner[4];
+    int32_t next[4]; ///< the tetrahedron beyond the facet opposite each corner, or -1
+} place;
+
 typedef struct flood_block {
     found *found;
     size_t count, capacity;
@@ -40,6 +46,7 @@ typedef struct flooder {
 typedef struct flood {
     const enf_arrangement *arrangement;
     const int32_t *order; ///< polygons by plane
+    const place *places;  ///< per tetrahedron
     flood_block *blocks;
     flooder *flooders;
 } flood;
@@ -108,20 +115,19 @@ static contact meets(flooder *w, const int32_t corner[4], int sign[4]) {
 }
 
 /// Is a facet of the tetrahedron between it and the polygon?
-static bool facet_separates(const flooder *w, const enf_tet_mesh *tets, int32_t t) {
+static bool facet_separates(const flooder *w, const int32_t corner[4]) {
+    static const int outside[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}; // the back is inside
     const double *points = w->geometry.points;
     for (int k = 0; k < 4; k++) {
-        int32_t facet = tets->facets[t][k];
-        const int32_t *corner = tets->facet_corners[facet];
-        int inner = tets->facet_sides[facet][1] == t ? 1 : -1;
-        bool outside = true;
-        for (int32_t i = 0; i < w->lines.count && outside; i++) {
+        int32_t a = corner[outside[k][0]], b = corner[outside[k][1]], c = corner[outside[k][2]];
+        bool apart = true;
+        for (int32_t i = 0; i < w->lines.count && apart; i++) {
             int32_t point = w->lines.corners[i];
-            if (point == corner[0] || point == corner[1] || point == corner[2]) continue;
-            outside = enf_points_orient(points + 3 * (size_t)corner[0], points + 3 * (size_t)corner[1],
-                                        points + 3 * (size_t)corner[2], points + 3 * (size_t)point) != inner;
+            if (point == a || point == b || point == c) continue;
+            apart = enf_points_orient(points + 3 * (size_t)a, points + 3 * (size_t)b, points + 3 * (size_t)c,
+                                      points + 3 * (size_t)point) >= 0;
         }
-        if (outside) return true;
+        if (apart) return true;
     }
     return false;
 }
@@ -169,7 +175,7 @@ static bool has_corner(const int32_t corner[4], int32_t point) {
 
 static void take_tetrahedron(flooder *w, flood_block *block, const enf_tet_mesh *tets, int32_t t, contact how,
                              const int sign[4]) {
-    if (how == ACROSS && !facet_separates(w, tets, t))
+    if (how == ACROSS && !facet_separates(w, tets->corners[t]))
         add_found(w, block, t, lines_near(w, tets->corners[t]));
     if (how == COVERS) {
         int k = 0;
@@ -181,7 +187,7 @@ static void take_tetrahedron(flooder *w, flood_block *block, const enf_tet_mesh 
 
 /// From a tetrahedron at the polygon's first corner, around that corner and through all that the polygon may
 /// meet.
-static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *tets) {
+static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *tets, const place *places) {
     const int32_t mark = w->lines.polygon + 1, corner = w->lines.corners[0];
     size_t depth = 0;
     if (!enf_array_reserve(w->stack, w->stack_capacity, 1)) w->failed = true;
@@ -191,20 +197,20 @@ static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *te
     while (depth > 0 && !w->failed) {
         int32_t t = w->stack[--depth];
         int sign[4];
-        contact how = meets(w, tets->corners[t], sign);
+        const place *here = &places[t];
+        contact how = meets(w, here->corner, sign);
         take_tetrahedron(w, block, tets, t, how, sign);
-        bool around = has_corner(tets->corners[t], corner);
+        bool around = has_corner(here->corner, corner);
         if (how == APART && !around) continue;
         if (!enf_array_reserve(w->stack, w->stack_capacity, depth + 4)) {
             w->failed = true;
             return;
         }
         for (int k = 0; k < 4; k++) {
-            bool star = around && tets->corners[t][k] != corner;
-            if (!star && !reaches_through(w, tets->corners[t], sign, k)) continue;
-            const int32_t *sides = tets->facet_sides[tets->facets[t][k]];
-            int32_t next = sides[0] == t ? sides[1] : sides[0];
+            int32_t next = here->next[k];
             if (next < 0 || w->stamp[next] == mark) continue;
+            bool star = around && here->corner[k] != corner;
+            if (!star && !reaches_through(w, here->corner, sign, k)) continue;
             w->stamp[next] = mark;
             w->stack[depth++] = next;
         }
@@ -243,7 +249,8 @@ static int tiling_facets(const enf_tet_mesh *tets, const int32_t *corner, int co
     return count;
 }
 
-static void take_polygon(flooder *w, flood_block *block, const enf_arrangement *arrangement, int32_t polygon) {
+static void take_polygon(flooder *w, flood_block *block, const flood *all, int32_t polygon) {
+    const enf_arrangement *arrangement = all->arrangement;
     int32_t facets[FACETED_CORNERS_MAX], plane = arrangement->polygon_plane[polygon];
     enf_polygon_lines_take(&w->lines, arrangement, polygon);
     int tiling = tiling_facets(&arrangement->tets, w->lines.corners, w->lines.count, facets);
@@ -254,7 +261,7 @@ static void take_polygon(flooder *w, flood_block *block, const enf_arrangement *
         w->plane_mark++;
         enf_geometry_make_filter(&w->geometry, plane, &w->filter);
     }
-    flood_polygon(w, block, &arrangement->tets);
+    flood_polygon(w, block, &arrangement->tets, all->places);
 }
 
 // ---------------------------------------------------------------------------------------------- all of them
@@ -265,7 +272,7 @@ static void flood_job(void *user, int32_t index, int thread) {
     size_t end = ((size_t)index + 1) * BLOCK;
     if (end > all->arrangement->mesh->polygon_count) end = all->arrangement->mesh->polygon_count;
     for (size_t i = (size_t)index * BLOCK; i < end && !w->failed; i++)
-        take_polygon(w, &all->blocks[index], all->arrangement, all->order[w->rank = (int32_t)i]);
+        take_polygon(w, &all->blocks[index], all, all->order[w->rank = (int32_t)i]);
 }
 
 /// Polygons sorted by plane (free() it), or null without memory.
@@ -284,6 +291,18 @@ static int32_t *sort_by_plane(const enf_arrangement *arrangement) {
     for (size_t p = 0; p < count; p++) order[next[arrangement->polygon_plane[p] - first]++] = (int32_t)p;
     free(next);
     return order;
+}
+
+static place *make_places(const enf_tet_mesh *tets) {
+    place *places = enf_array_new((size_t)tets->count, sizeof *places);
+    for (int32_t t = 0; places && t < tets->count; t++) {
+        memcpy(places[t].corner, tets->corners[t], sizeof places[t].corner);
+        for (int k = 0; k < 4; k++) {
+            const int32_t *sides = tets->facet_sides[tets->facets[t][k]];
+            places[t].next[k] = sides[0] == t ? sides[1] : sides[0];
+        }
+    }
+    return places;
 }
 
 /// Candidates by tetrahedron, and all hits in a row; both in the order of the blocks.
@@ -342,11 +361,13 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
     int threads = crew->threads;
     int32_t block_count = (int32_t)((arrangement->mesh->polygon_count + BLOCK - 1) / BLOCK);
     const int32_t *order = candidates->order = sort_by_plane(arrangement);
+    place *places = make_places(&arrangement->tets);
     flood all = {.arrangement = arrangement,
                  .order = order,
+                 .places = places,
                  .blocks = enf_array_zeroed((size_t)block_count, sizeof *all.blocks),
                  .flooders = enf_array_zeroed((size_t)threads, sizeof *all.flooders)};
-    bool good = order && all.blocks && all.flooders;
+    bool good = order && places && all.blocks && all.flooders;
     for (int w = 0; good && w < threads; w++) good = start_flooder(&all.flooders[w], arrangement);
     if (good) {
         *stopped = !enf_parallel_for(crew, block_count, flood_job, &all);
@@ -360,5 +381,6 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
     }
     free(all.blocks);
     free(all.flooders);
+    free(places);
     return good;
 }
