@@ -64,22 +64,41 @@ static bool sort_facets(finder *f) {
 
 typedef enum overlap { NONE, PART, WHOLE } overlap;
 
+/// The same for one line of a polygon with very many.
+static overlap line_overlap(finder *f, int32_t first, int32_t line) {
+    bool inside = false, outside = false;
+    int32_t h = first;
+    do {
+        int side =
+            enf_geometry_side(&f->pool->geometry, f->space->halves[h].vertex, f->lines.first_plane + line);
+        inside |= side < 0;
+        outside |= side > 0;
+        h = f->space->halves[h].next;
+    } while (h != first);
+    return !inside ? NONE : outside ? PART : WHOLE;
+}
+
 /// What the polygon's lines say of a facet in its plane: PART may still turn out to be nothing.
 static overlap facet_overlap(finder *f, int32_t facet) {
-    const enf_subdivision *space = f->space;
-    int32_t first = space->facets[facet].first;
+    const enf_half *halves = f->space->halves;
+    int32_t first = f->space->facets[facet].first, h = first;
+    uint32_t inside = 0, outside = 0;
     overlap result = WHOLE;
-    for (int32_t i = 0; i < f->lines.count; i++) {
-        bool inside = false;
-        int32_t h = first;
+    if (f->lines.wanted) {
         do {
-            int side =
-                enf_polygon_lines_side(&f->lines, &f->pool->geometry, space->halves[h].vertex, i);
-            inside |= side < 0;
-            if (side > 0) result = PART;
-            h = space->halves[h].next;
-        } while (h != first && !(inside && result == PART));
-        if (!inside) return NONE;
+            const enf_line_sides *sides =
+                enf_polygon_lines_at(&f->lines, &f->pool->geometry, halves[h].vertex);
+            inside |= sides->inside;
+            outside |= sides->outside;
+            h = halves[h].next;
+        } while (h != first);
+        if (inside != f->lines.wanted) return NONE;
+        if (outside) result = PART;
+    }
+    for (int32_t i = ENF_LINES_FEW; i < f->lines.count; i++) {
+        overlap line = line_overlap(f, first, i);
+        if (line == NONE) return NONE;
+        if (line == PART) result = PART;
     }
     return result;
 }
@@ -131,8 +150,8 @@ static bool cover_hits(finder *f, const enf_crew *crew, bool *stopped) {
             return false;
         }
         const enf_hit *hit = &arrangement->hits[i];
-        if (i == 0 || hit->polygon != hit[-1].polygon)
-            enf_polygon_lines_take(&f->lines, arrangement, hit->polygon);
+        if (i == 0 || hit->polygon != hit[-1].polygon || hit->lines != hit[-1].lines)
+            enf_polygon_lines_take(&f->lines, arrangement, hit->polygon, hit->lines);
         int32_t source = source_index(f, hit->source);
         for (int32_t k = f->first[source]; k < f->first[source + 1]; k++) {
             if (!cover_facet(f, f->facets[k])) return false;

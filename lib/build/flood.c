@@ -58,12 +58,12 @@ void enf_candidates_free(enf_candidates *candidates) {
     memset(candidates, 0, sizeof *candidates);
 }
 
-static void add_hit(flooder *w, flood_block *block, int32_t facet) {
+static void add_hit(flooder *w, flood_block *block, int32_t facet, uint32_t lines) {
     if (!enf_array_reserve(block->hits, block->hit_capacity, block->hit_count + 1)) {
         w->failed = true;
         return;
     }
-    block->hits[block->hit_count++] = (enf_hit){w->lines.polygon, facet};
+    block->hits[block->hit_count++] = (enf_hit){w->lines.polygon, facet, lines};
 }
 
 static void add_found(flooder *w, flood_block *block, int32_t t, uint32_t lines) {
@@ -91,9 +91,9 @@ static int side_of_plane(flooder *w, int32_t point) {
     return sign;
 }
 
-/// How the polygon's inside meets a tetrahedron. `sign` receives the sides of its plane on which the corners
-/// lie.
-static contact meets(flooder *w, const int32_t corner[4], int sign[4]) {
+/// How the polygon's inside meets a tetrahedron. `sign` receives the sides of its plane on which the corners lie
+/// and `sides` (unless they are all on one) those of its lines.
+static contact meets(flooder *w, const int32_t corner[4], int sign[4], enf_line_sides sides[4]) {
     int behind = 0, front = 0;
     for (int k = 0; k < 4; k++) {
         sign[k] = side_of_plane(w, corner[k]);
@@ -103,14 +103,12 @@ static contact meets(flooder *w, const int32_t corner[4], int sign[4]) {
     if (behind == 4 || front == 4) return APART;
     bool across = behind && front;
     // Some part of the tetrahedron that is in the plane must be inside each of the polygon's lines.
-    for (int32_t i = 0; i < w->lines.count; i++) {
-        bool inside = false;
-        for (int k = 0; k < 4 && !inside; k++) {
-            inside = (across || sign[k] == 0) &&
-                     enf_polygon_lines_side(&w->lines, &w->geometry, corner[k], i) < 0;
-        }
-        if (!inside) return APART;
+    uint32_t inside = 0;
+    for (int k = 0; k < 4; k++) {
+        sides[k] = *enf_polygon_lines_at(&w->lines, &w->geometry, corner[k]);
+        if (across || sign[k] == 0) inside |= sides[k].inside;
     }
+    if (inside != w->lines.wanted) return APART;
     return across ? ACROSS : behind + front == 1 ? COVERS : TOUCHES;
 }
 
@@ -132,22 +130,9 @@ static bool facet_separates(const flooder *w, const int32_t corner[4]) {
     return false;
 }
 
-/// The polygon's lines that do not have all of the tetrahedron inside.
-static uint32_t lines_near(flooder *w, const int32_t corner[4]) {
-    uint32_t near = 0;
-    for (int32_t i = 0; i < w->lines.count && i < ENF_LINES_KNOWN_MAX; i++) {
-        for (int k = 0; k < 4; k++) {
-            if (enf_polygon_lines_side(&w->lines, &w->geometry, corner[k], i) <= 0) continue;
-            near |= UINT32_C(1) << i;
-            break;
-        }
-    }
-    return near;
-}
-
 /// Can the polygon's inside reach through the facet opposite corner k? Some part of the facet that is in the plane
 /// must be inside each of the polygon's lines.
-static bool reaches_through(flooder *w, const int32_t corner[4], const int sign[4], int k) {
+static bool reaches_through(const flooder *w, const int sign[4], const enf_line_sides sides[4], int k) {
     int behind = 0, front = 0;
     for (int i = 1; i < 4; i++) {
         behind += sign[(k + i) & 3] < 0;
@@ -155,16 +140,12 @@ static bool reaches_through(flooder *w, const int32_t corner[4], const int sign[
     }
     if (behind == 3 || front == 3) return false;
     bool across = behind && front;
-    for (int32_t i = 0; i < w->lines.count; i++) {
-        bool inside = false;
-        for (int j = 1; j < 4 && !inside; j++) {
-            int at = (k + j) & 3;
-            inside = (across || sign[at] == 0) &&
-                     enf_polygon_lines_side(&w->lines, &w->geometry, corner[at], i) < 0;
-        }
-        if (!inside) return false;
+    uint32_t inside = 0;
+    for (int i = 1; i < 4; i++) {
+        int at = (k + i) & 3;
+        if (across || sign[at] == 0) inside |= sides[at].inside;
     }
-    return true;
+    return inside == w->lines.wanted;
 }
 
 static bool has_corner(const int32_t corner[4], int32_t point) {
@@ -174,15 +155,23 @@ static bool has_corner(const int32_t corner[4], int32_t point) {
 // ---------------------------------------------------------------------------------------------- one polygon
 
 static void take_tetrahedron(flooder *w, flood_block *block, const enf_tet_mesh *tets, int32_t t, contact how,
-                             const int sign[4]) {
-    if (how == ACROSS && !facet_separates(w, tets->corners[t]))
-        add_found(w, block, t, lines_near(w, tets->corners[t]));
-    if (how == COVERS) {
-        int k = 0;
-        while (sign[k] == 0) k++;
-        const int32_t facet = tets->facets[t][k], *sides = tets->facet_sides[facet];
-        if (sides[0] == t || sides[0] < 0) add_hit(w, block, facet);
+                             const int sign[4], const enf_line_sides sides[4]) {
+    uint32_t near = 0;
+    int opposite = -1;
+    if (how != ACROSS && how != COVERS) return;
+    for (int k = 0; k < 4; k++) {
+        if (how == COVERS && sign[k] != 0) {
+            opposite = k;
+        } else {
+            near |= sides[k].outside;
+        }
     }
+    if (how == ACROSS) {
+        if (!facet_separates(w, tets->corners[t])) add_found(w, block, t, near);
+        return;
+    }
+    const int32_t facet = tets->facets[t][opposite], *facet_sides = tets->facet_sides[facet];
+    if (facet_sides[0] == t || facet_sides[0] < 0) add_hit(w, block, facet, near);
 }
 
 /// From a tetrahedron at the polygon's first corner, around that corner and through all that the polygon may
@@ -197,9 +186,10 @@ static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *te
     while (depth > 0 && !w->failed) {
         int32_t t = w->stack[--depth];
         int sign[4];
+        enf_line_sides sides[4];
         const place *here = &places[t];
-        contact how = meets(w, here->corner, sign);
-        take_tetrahedron(w, block, tets, t, how, sign);
+        contact how = meets(w, here->corner, sign, sides);
+        take_tetrahedron(w, block, tets, t, how, sign, sides);
         bool around = has_corner(here->corner, corner);
         if (how == APART && !around) continue;
         if (!enf_array_reserve(w->stack, w->stack_capacity, depth + 4)) {
@@ -210,7 +200,7 @@ static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *te
             int32_t next = here->next[k];
             if (next < 0 || w->stamp[next] == mark) continue;
             bool star = around && here->corner[k] != corner;
-            if (!star && !reaches_through(w, here->corner, sign, k)) continue;
+            if (!star && !reaches_through(w, sign, sides, k)) continue;
             w->stamp[next] = mark;
             w->stack[depth++] = next;
         }
@@ -252,10 +242,11 @@ static int tiling_facets(const enf_tet_mesh *tets, const int32_t *corner, int co
 static void take_polygon(flooder *w, flood_block *block, const flood *all, int32_t polygon) {
     const enf_arrangement *arrangement = all->arrangement;
     int32_t facets[FACETED_CORNERS_MAX], plane = arrangement->polygon_plane[polygon];
-    enf_polygon_lines_take(&w->lines, arrangement, polygon);
+    enf_polygon_lines_take(&w->lines, arrangement, polygon, 0);
     int tiling = tiling_facets(&arrangement->tets, w->lines.corners, w->lines.count, facets);
-    for (int i = 0; i < tiling; i++) add_hit(w, block, facets[i]); // it crosses nothing
+    for (int i = 0; i < tiling; i++) add_hit(w, block, facets[i], 0); // it crosses nothing
     if (tiling) return;
+    enf_polygon_lines_take(&w->lines, arrangement, polygon, UINT32_MAX);
     if (plane != w->plane) {
         w->plane = plane;
         w->plane_mark++;

@@ -8,7 +8,7 @@
 /// A polygon whose plane goes through the inside of a tetrahedron, near enough to be worth a closer look.
 typedef struct enf_candidate {
     int32_t rank;   ///< of the polygon, in the order of planes
-    uint32_t lines; ///< a bit for each of the polygon's first edges that does not have the tetrahedron inside
+    uint32_t lines; ///< a bit for each of the polygon's first edges that has not all of the tetrahedron inside
 } enf_candidate;
 
 typedef struct enf_candidates {

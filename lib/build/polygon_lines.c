@@ -19,32 +19,32 @@ bool enf_polygon_lines_reserve(enf_polygon_lines *lines, size_t vertex_count) {
     return true;
 }
 
-void enf_polygon_lines_take(enf_polygon_lines *lines, const enf_arrangement *arrangement, int32_t polygon) {
+void enf_polygon_lines_take(enf_polygon_lines *lines, const enf_arrangement *arrangement, int32_t polygon,
+                            uint32_t wanted) {
     const enf_mesh *mesh = arrangement->mesh;
     int64_t first = mesh->polygon_corner[polygon];
-    lines->arrangement = arrangement;
     lines->polygon = polygon;
     lines->count = (int32_t)(mesh->polygon_corner[polygon + 1] - first);
     lines->corners = mesh->corners + first;
     lines->first_plane = arrangement->edge_plane_first + (int32_t)first;
-    lines->filters_made = 0;
+    lines->wanted = lines->count < ENF_LINES_FEW ? wanted & ((UINT32_C(1) << lines->count) - 1) : wanted;
     lines->mark++;
+    for (uint32_t left = lines->wanted; left; left &= left - 1) {
+        int i = __builtin_ctz(left);
+        enf_geometry_make_filter(&arrangement->geometry, lines->first_plane + i, &lines->filters[i]);
+    }
 }
 
-int enf_polygon_lines_find_side(enf_polygon_lines *lines, enf_geometry *geometry, int32_t vertex, int32_t i) {
-    int32_t plane = lines->first_plane + i;
-    if (i >= ENF_LINES_KNOWN_MAX) return enf_geometry_side(geometry, vertex, plane);
-    enf_plane_filter *filter = &lines->filters[i];
-    if (!(lines->filters_made >> i & 1)) {
-        enf_geometry_make_filter(geometry, plane, filter);
-        lines->filters_made |= UINT32_C(1) << i;
+void enf_polygon_lines_find(enf_polygon_lines *lines, enf_geometry *geometry, int32_t vertex) {
+    uint32_t inside = 0, outside = 0;
+    for (uint32_t left = lines->wanted; left; left &= left - 1) {
+        int i = __builtin_ctz(left);
+        int side = enf_geometry_side_by(geometry, vertex, lines->first_plane + i, &lines->filters[i]);
+        if (side < 0) inside |= UINT32_C(1) << i;
+        if (side > 0) outside |= UINT32_C(1) << i;
     }
-    struct enf_known_sides *known = &lines->known[vertex];
-    if (known->mark != lines->mark) {
-        known->mark = lines->mark;
-        known->sides = 0;
-    }
-    int side = enf_geometry_side_by(geometry, vertex, plane, filter);
-    known->sides |= (uint64_t)(unsigned)(side + 2) << (2 * (unsigned)i);
-    return side;
+    enf_line_sides *known = &lines->known[vertex];
+    known->mark = lines->mark;
+    known->inside = inside;
+    known->outside = outside;
 }

@@ -5,27 +5,31 @@
 
 #include "build/arrangement.h"
 
-enum { ENF_LINES_KNOWN_MAX = 32 }; ///< edges whose answers are kept; those of further ones are not
+enum { ENF_LINES_FEW = 32 }; ///< edges that fit the masks below; further ones are asked for singly
+
+/// What is known of a vertex: a bit for each of the wanted edges.
+typedef struct enf_line_sides {
+    int32_t mark;
+    int32_t plane_sign; ///< the owner's: see flood.c
+    uint32_t inside;    ///< strictly on the polygon's side
+    uint32_t outside;   ///< strictly on the other one
+} enf_line_sides;
 
 typedef struct enf_polygon_lines {
-    const enf_arrangement *arrangement;
     int32_t polygon, count; ///< count: its edges
     const int32_t *corners; ///< its points
     int32_t first_plane;    ///< of edge 0
-    uint32_t filters_made;  ///< a bit for each of the first edges
-    enf_plane_filter filters[ENF_LINES_KNOWN_MAX];
+    uint32_t wanted;        ///< the edges that matter
+    enf_plane_filter filters[ENF_LINES_FEW];
 
     int32_t mark;
-    struct enf_known_sides {
-        int32_t mark;
-        int32_t plane_sign; ///< the owner's: see flood.c
-        uint64_t sides;     ///< two bits an edge: 0 unknown, else sign + 2
-    } *known;           ///< per vertex
+    enf_line_sides *known; ///< per vertex
     size_t known_capacity;
 } enf_polygon_lines;
 
-/// From now on the lines are those of this polygon.
-void enf_polygon_lines_take(enf_polygon_lines *lines, const enf_arrangement *arrangement, int32_t polygon);
+/// From now on the lines are those of this polygon; of the first ENF_LINES_FEW only the wanted ones.
+void enf_polygon_lines_take(enf_polygon_lines *lines, const enf_arrangement *arrangement, int32_t polygon,
+                            uint32_t wanted);
 void enf_polygon_lines_free(enf_polygon_lines *lines);
 
 /// Makes room for what is known of vertices below this number. False without memory.
@@ -36,19 +40,15 @@ static inline void enf_polygon_lines_forget(enf_polygon_lines *lines, int32_t ve
     lines->known[vertex].mark = 0;
 }
 
-/// Asks the geometry; see enf_polygon_lines_side.
-int enf_polygon_lines_find_side(enf_polygon_lines *lines, enf_geometry *geometry, int32_t vertex, int32_t i);
+/// Asks the geometry; see enf_polygon_lines_at.
+void enf_polygon_lines_find(enf_polygon_lines *lines, enf_geometry *geometry, int32_t vertex);
 
-/// -1: the vertex is inside edge i's line, where the polygon is; +1: outside; 0: on it. The line stands for a
-/// plane that is not parallel to the polygon, so vertices off the polygon's plane get an answer as well. Exact.
-static inline int enf_polygon_lines_side(enf_polygon_lines *lines, enf_geometry *geometry, int32_t vertex,
-                                         int32_t i) {
-    const struct enf_known_sides *known = &lines->known[vertex];
-    if (i < ENF_LINES_KNOWN_MAX && known->mark == lines->mark) {
-        unsigned side = (unsigned)(known->sides >> (2 * (unsigned)i)) & 3;
-        if (side) return (int)side - 2;
-    }
-    return enf_polygon_lines_find_side(lines, geometry, vertex, i);
+/// On which sides of the wanted lines the vertex lies. A line stands for a plane that is not parallel to the
+/// polygon, so vertices off the polygon's plane get an answer as well. Exact.
+static inline const enf_line_sides *enf_polygon_lines_at(enf_polygon_lines *lines, enf_geometry *geometry,
+                                                         int32_t vertex) {
+    if (lines->known[vertex].mark != lines->mark) enf_polygon_lines_find(lines, geometry, vertex);
+    return &lines->known[vertex];
 }
 
 #endif

@@ -9,7 +9,7 @@
 void enf_subdivision_free(enf_subdivision *s) {
     void *arrays[] = {s->geometry.crossings, s->halves,      s->facets,     s->edge_half,   s->edge_slot,
                       s->cell_facet,         s->cell_parent, s->node_plane, s->node_child,  s->tetrahedron_root,
-                      s->vertex_sign,        s->shares,      s->cut_edges,  s->outline,     s->outline_at};
+                      s->vertex_sign,        s->shares,      s->cut_edges,  s->outline,     s->outline_at, s->touching};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     memset(s, 0, sizeof *s);
 }
@@ -128,7 +128,7 @@ static bool note_cut_edge(enf_subdivision *s, int32_t half, int32_t from, int32_
 
 int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
     bool behind = false, front = false;
-    s->share_count = s->cut_edge_count = 0;
+    s->share_count = s->cut_edge_count = s->touching_count = 0;
     if (s->edge_capacity > s->slot_capacity) {
         size_t known = s->slot_capacity;
         if (!enf_array_reserve(s->edge_slot, s->slot_capacity, s->edge_capacity)) return -1;
@@ -147,6 +147,10 @@ int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
             int32_t after = s->halves[h].next, to = s->halves[after].vertex;
             int sign_to = enf_subdivision_sign(s, to);
             if (sign * sign_to < 0 && !note_cut_edge(s, h, from, to)) return -1;
+            if (sign == 0) {
+                if (!enf_array_reserve(s->touching, s->touching_capacity, s->touching_count + 1)) return -1;
+                s->touching[s->touching_count++] = from;
+            }
             h = after;
             from = to;
             sign = sign_to;

@@ -28,7 +28,7 @@ typedef struct enf_share {
 } enf_share;
 
 typedef struct enf_cut_edge {
-    int32_t from, to;   ///< vertices: from >= 0 ... their sides differ
+    int32_t from, to;   ///< vertices, on different sides
     int32_t half, edge; ///< a half on the edge
     int32_t vertex;     ///< the crossing with the plane, if it has been made, else -1
 } enf_cut_edge;
@@ -65,6 +65,8 @@ typedef struct enf_subdivision {
     size_t share_count, share_capacity;
     enf_cut_edge *cut_edges;
     size_t cut_edge_count, cut_edge_capacity;
+    int32_t *touching; ///< its corners on the plane, some of them more than once
+    size_t touching_count, touching_capacity;
     struct enf_outline {
         int32_t from, to, edge, edge_plane;
     } *outline;
@@ -92,8 +94,8 @@ static inline int enf_subdivision_sign(enf_subdivision *subdivision, int32_t ver
     return sign;
 }
 
-/// Does the plane pass through the inside of the cell? If so, `shares` and `cut_edges` are filled for what
-/// follows. Negative without memory.
+/// Does the plane pass through the inside of the cell? If so, `shares`, `cut_edges` and `touching` are filled
+/// for what follows. Negative without memory.
 int enf_subdivision_crosses(enf_subdivision *subdivision, int32_t cell);
 
 /// The vertex where the plane crosses cut_edges[i], made if need be; -1 without memory.
