@@ -19,8 +19,7 @@ typedef struct cutter {
     enf_arrangement *arrangement;
     enf_subdivision *space;
     enf_polygon_lines lines;
-    uint32_t lines_near; ///< see enf_candidate
-    int32_t *refs;       ///< of the tree: nodes and cells
+    int32_t *refs; ///< of the tree: nodes and cells
     enf_candidate *candidates;
     size_t candidate_capacity;
     size_t ref_capacity;
@@ -33,46 +32,62 @@ static void add_hit(cutter *c, int32_t source) {
         c->failed = true;
         return;
     }
-    arrangement->hits[arrangement->hit_count++] = (enf_hit){c->lines.polygon, source};
+    arrangement->hits[arrangement->hit_count++] = (enf_hit){c->lines.polygon, source, c->lines.wanted};
 }
 
 // ---------------------------------------------------------------------------------------------- one cell
 
+/// The vertex where a cut edge meets the plane; false without memory.
+static bool cut_vertex(cutter *c, size_t i, int32_t *vertex) {
+    *vertex = enf_subdivision_cut_vertex(c->space, i);
+    if (*vertex < 0) c->failed = true;
+    return *vertex >= 0;
+}
+
+/// The same as below for one line of a polygon with very many.
+static bool line_lets_in(cutter *c, int32_t line) {
+    enf_subdivision *space = c->space;
+    int32_t plane = c->lines.first_plane + line, vertex;
+    for (size_t i = 0; i < space->cut_edge_count; i++) {
+        if (!cut_vertex(c, i, &vertex)) return false;
+        if (enf_geometry_side(&space->geometry, vertex, plane) < 0) return true;
+    }
+    for (size_t i = 0; i < space->touching_count; i++) {
+        if (enf_geometry_side(&space->geometry, space->touching[i], plane) < 0) return true;
+    }
+    return false;
+}
+
 /// Does the polygon's inside meet the part of its plane that is in the cell, as far as the polygon's edges tell?
+/// It does not if a line has no corner of that part strictly inside.
 static bool lines_let_in(cutter *c) {
     enf_subdivision *space = c->space;
     enf_geometry *geometry = &space->geometry;
+    uint32_t wanted = c->lines.wanted, sure = 0, maybe = 0;
     size_t vertices = (size_t)geometry->point_count + (size_t)geometry->crossing_count + space->cut_edge_count;
     if (!enf_polygon_lines_reserve(&c->lines, vertices)) {
         c->failed = true;
         return false;
     }
-    for (int32_t i = 0; i < c->lines.count; i++) {
-        bool inside = i < ENF_LINES_KNOWN_MAX && !(c->lines_near >> i & 1);
-        for (size_t k = 0; k < space->cut_edge_count && !inside; k++) {
-            const enf_cut_edge *cut = &space->cut_edges[k];
-            int from = enf_polygon_lines_side(&c->lines, geometry, cut->from, i),
-                to = enf_polygon_lines_side(&c->lines, geometry, cut->to, i);
-            if (from >= 0 && to >= 0) continue;
-            inside = true;
-            if (from <= 0 && to <= 0) continue;
-            int32_t vertex = enf_subdivision_cut_vertex(space, k);
-            if (vertex < 0) {
-                c->failed = true;
-                return false;
-            }
-            inside = enf_polygon_lines_side(&c->lines, geometry, vertex, i) < 0;
-        }
-        for (size_t k = 0; k < space->share_count && !inside; k++) { // corners on the plane
-            int32_t first = space->facets[space->shares[k]].first, h = first;
-            do {
-                int32_t vertex = space->halves[h].vertex;
-                inside = (space->vertex_sign[vertex] & 3) == 1 &&
-                         enf_polygon_lines_side(&c->lines, geometry, vertex, i) < 0;
-                h = space->halves[h].next;
-            } while (h != first && !inside);
-        }
-        if (!inside) return false;
+    for (size_t i = 0; i < space->touching_count; i++)
+        sure |= enf_polygon_lines_at(&c->lines, geometry, space->touching[i])->inside;
+    for (size_t i = 0; i < space->cut_edge_count && sure != wanted; i++) {
+        uint32_t from = enf_polygon_lines_at(&c->lines, geometry, space->cut_edges[i].from)->inside,
+                 to = enf_polygon_lines_at(&c->lines, geometry, space->cut_edges[i].to)->inside;
+        sure |= from & to;
+        maybe |= from | to;
+    }
+    if (wanted & ~(sure | maybe)) return false;
+    for (size_t i = 0; i < space->cut_edge_count && sure != wanted; i++) {
+        const enf_cut_edge *cut = &space->cut_edges[i];
+        int32_t vertex;
+        if (!(wanted & ~sure & (c->lines.known[cut->from].inside | c->lines.known[cut->to].inside))) continue;
+        if (!cut_vertex(c, i, &vertex)) return false;
+        sure |= enf_polygon_lines_at(&c->lines, geometry, vertex)->inside;
+    }
+    if (sure != wanted) return false;
+    for (int32_t i = ENF_LINES_FEW; i < c->lines.count; i++) {
+        if (!line_lets_in(c, i)) return false;
     }
     return true;
 }
@@ -90,7 +105,8 @@ static void cut_cell(cutter *c, int32_t cell) {
     int crosses = enf_subdivision_crosses(c->space, cell);
     if (crosses < 0) c->failed = true;
     if (crosses <= 0) return;
-    if (!lines_let_in(c)) {
+    bool near = c->lines.wanted || c->lines.count > ENF_LINES_FEW;
+    if (near && !lines_let_in(c)) {
         leave_cell(c);
         return;
     }
@@ -218,8 +234,7 @@ static bool cut_all(cutter *c, const enf_candidates *candidates, const enf_crew 
             int32_t polygon = candidates->order[c->candidates[i].rank];
             int32_t plane = c->arrangement->polygon_plane[polygon];
             if (plane != c->space->plane) enf_subdivision_take_plane(c->space, plane);
-            enf_polygon_lines_take(&c->lines, c->arrangement, polygon);
-            c->lines_near = c->candidates[i].lines;
+            enf_polygon_lines_take(&c->lines, c->arrangement, polygon, c->candidates[i].lines);
             cut_tetrahedron(c, t);
         }
     }
