@@ -28,6 +28,7 @@ typedef struct enf_arrangement {
     bool *polygon_flipped;    ///< the polygon's front is the plane's back
 
     enf_subdivision subdivision; ///< from split to connect; its geometry has the planes above
+    uint8_t *reflex;             ///< see join.h
     enf_hit *hits;
     size_t hit_count, hit_capacity;
 } enf_arrangement;

@@ -4,8 +4,44 @@
 #include "build/join.h"
 
 #include "base/array.h"
+#include "base/exact.h"
 
 #include <stdlib.h>
+
+static int32_t apex(const enf_tet_mesh *tets, int32_t t, int32_t facet) {
+    int k = 0;
+    while (tets->facets[t][k] != facet) k++;
+    return tets->corners[t][k];
+}
+
+uint8_t *enf_tetrahedra_reflex(const enf_tet_mesh *tets, const double *points, const uint8_t *may) {
+    uint8_t *reflex = enf_array_zeroed((size_t)tets->facet_count, sizeof *reflex);
+    for (int32_t f = 0; reflex && f < tets->facet_count; f++) {
+        int32_t behind = tets->facet_sides[f][0], front = tets->facet_sides[f][1];
+        if (behind < 0 || front < 0 || !may[behind] || !may[front]) continue;
+        const double *p = points + 3 * (size_t)apex(tets, behind, f), *q = points + 3 * (size_t)apex(tets, front, f);
+        for (int i = 0; i < 3; i++) {
+            const double *a = points + 3 * (size_t)tets->facet_corners[f][i],
+                         *b = points + 3 * (size_t)tets->facet_corners[f][(i + 1) % 3];
+            if (enf_points_orient(a, b, p, q) < 0) reflex[f] |= (uint8_t)(1 << i);
+        }
+    }
+    return reflex;
+}
+
+/// Has the facet a part of an edge of its tetrahedra at which they are not convex?
+static bool is_hopeless(const enf_subdivision *s, const uint8_t *reflex, int32_t f) {
+    int32_t source = s->facets[f].source, first = s->facets[f].first, h = first;
+    if (source < 0 || !reflex[source]) return false;
+    do {
+        for (int i = 0; i < 3; i++) {
+            if (reflex[source] >> i & 1 && s->halves[h].edge_plane == s->halves[3 * source + i].edge_plane)
+                return true;
+        }
+        h = s->halves[h].next;
+    } while (h != first);
+    return false;
+}
 
 /// The facets at an edge that belong to one of two cells and not to both: a half of each, or -1.
 static void find_beside(const enf_subdivision *s, int32_t edge, const int32_t cell[2], int32_t beside[2]) {
@@ -89,14 +125,15 @@ static void join_cells(enf_subdivision *s, int32_t behind, int32_t front) {
     s->cell_facet[front] = -1;
 }
 
-int32_t enf_subdivision_join(enf_subdivision *s, const uint8_t *covered, const uint8_t *may, int32_t *into) {
+int32_t enf_subdivision_join(enf_subdivision *s, const uint8_t *covered, const uint8_t *may,
+                             const uint8_t *reflex, int32_t *into) {
     int32_t joined = 0;
     // The last cuts first: they divide the smallest cells. A second round would find one or two in a hundred more.
     for (size_t i = s->facet_count; i-- > 0;) {
         enf_share *facet = &s->facets[i];
         if (facet->first < 0 || covered[i] || facet->cell[0] < 0 || facet->cell[1] < 0) continue;
         if (!may[facet->cell[0]] || !may[facet->cell[1]]) continue;
-        if (!may_join(s, covered, (int32_t)i)) continue;
+        if (is_hopeless(s, reflex, (int32_t)i) || !may_join(s, covered, (int32_t)i)) continue;
         into[facet->cell[1]] = facet->cell[0];
         join_cells(s, facet->cell[0], facet->cell[1]);
         joined++;

@@ -160,7 +160,7 @@ static void cut_tetrahedron(cutter *c, int32_t t) {
 /// Tetrahedra that will be cut are joined first where that makes a convex cell: a polygon then cuts one cell, not
 /// several. Returns the cell that each tetrahedron is in.
 static int32_t *join_tetrahedra(cutter *c, const enf_candidates *candidates) {
-    const enf_arrangement *arrangement = c->arrangement;
+    enf_arrangement *arrangement = c->arrangement;
     size_t count = (size_t)arrangement->tets.count;
     int32_t *into = enf_array_new(count, sizeof *into);
     uint8_t *may = enf_array_new(count, sizeof *may),
@@ -171,7 +171,10 @@ static int32_t *join_tetrahedra(cutter *c, const enf_candidates *candidates) {
             may[t] = candidates->offset[t] < candidates->offset[t + 1];
         }
         for (size_t i = 0; i < arrangement->hit_count; i++) covered[arrangement->hits[i].source] = 1;
-        if (!getenv("NOPRE")) enf_subdivision_join(c->space, covered, may, into);
+        arrangement->reflex = enf_tetrahedra_reflex(&arrangement->tets, arrangement->geometry.points, may);
+    }
+    if (arrangement->reflex) {
+        enf_subdivision_join(c->space, covered, may, arrangement->reflex, into);
     } else {
         c->failed = true;
     }
