@@ -13,7 +13,8 @@
 /// A polygon may lie on facets of this source (see enf_share).
 typedef struct enf_hit {
     int32_t polygon, source;
-    uint32_t lines; ///< a bit for each of the polygon's first edges that may not have all of these facets inside
+    uint32_t
+        lines; ///< a bit for each of the polygon's first edges that may not have all of these facets inside
 } enf_hit;
 
 typedef struct enf_arrangement {

@@ -60,9 +60,9 @@ typedef struct enf_complex {
     int32_t (*vertex_planes)[3];  ///< vertex_count entries; -1 -1 -1 for points
     double (*vertex_position)[3]; ///< grid steps; rounded for crossings
 
-    // Tetrahedra and, where one was cut, a tree of cuts: the exact way to find a point's cell. Cells were
-    // joined where that made one convex cell of two, across the tetrahedra's faces too: leaves may share a
-    // cell.
+    // Tetrahedra and, where one was cut, a tree of cuts: the exact way to find a point's cell. Tetrahedra
+    // that were joined before they were cut share a tree. Cells were joined where that made one convex cell
+    // of two: leaves may share a cell.
     int32_t tetrahedron_count;
     int32_t (*tetrahedra)[4];  ///< point numbers, positively oriented
     int32_t *tetrahedron_root; ///< >= 0: a node; < 0: the fine cell -1 - root

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The subdivision, with what covers its facets, becomes the fine complex: numbers without gaps, loops without
-// corners on straight lines, vertices that somebody uses. Overlaps of coplanar polygons are resolved here, in the
-// plane: they cut pieces out of a facet, not cells.
+// corners on straight lines, vertices that somebody uses. Overlaps of coplanar polygons are resolved here, in
+// the plane: they cut pieces out of a facet, not cells.
 #include "build/connect.h"
 
 #include "base/array.h"
@@ -16,7 +16,7 @@ typedef struct connector {
     const enf_arrangement *arrangement;
     enf_subdivision *space;
     enf_covers covers;
-    enf_pool pool; ///< has the geometry while we are at work
+    enf_pool pool;                       ///< has the geometry while we are at work
     int32_t *cell_number, *facet_number; ///< new numbers; -1: gone
     int32_t *cover_order;                ///< covers by facet
     enf_loop *open, *rest;               ///< of the facet at hand: what no cover has taken yet
@@ -241,7 +241,8 @@ static bool take_cover(connector *c, int32_t facet, int32_t cover, enf_loop cove
 
 static enf_loop copy_loop(connector *c, const enf_loops *loops, int32_t index, int32_t plane) {
     const enf_corner *corners = loops->corners + loops->offset[index];
-    return enf_pool_loop(&c->pool, plane, corners, (int32_t)(loops->offset[index + 1] - loops->offset[index]));
+    return enf_pool_loop(&c->pool, plane, corners,
+                         (int32_t)(loops->offset[index + 1] - loops->offset[index]));
 }
 
 /// A facet that covers share, and the rest of it.
@@ -268,8 +269,7 @@ static bool make_pieces(connector *c) {
     size_t facets = (size_t)complex->facet_count;
     complex->facet_piece = enf_array_new(facets + 1, sizeof *complex->facet_piece);
     size_t room = facets + facets / 16 + 1; // most facets are one piece
-    if (!complex->facet_piece ||
-        !enf_array_reserve(complex->piece_facet, c->piece_facet_capacity, room) ||
+    if (!complex->facet_piece || !enf_array_reserve(complex->piece_facet, c->piece_facet_capacity, room) ||
         !enf_array_reserve(complex->piece_cover, c->piece_capacity, room) ||
         !enf_array_reserve(complex->pieces.offset, complex->pieces.offset_capacity, room + 1)) {
         return false;
@@ -279,7 +279,7 @@ static bool make_pieces(connector *c) {
         complex->facet_piece[f] = complex->pieces.count;
         int32_t begin = complex->facet_cover[f], end = complex->facet_cover[f + 1], over = begin;
         while (over < end && complex->covers.offset[over] != complex->covers.offset[over + 1]) over++;
-        bool good = over < end    ? add_piece(c, f, NULL, 0, over)
+        bool good = over < end     ? add_piece(c, f, NULL, 0, over)
                     : begin == end ? add_piece(c, f, NULL, 0, ENF_PIECE_OPEN)
                                    : share_facet(c, f);
         if (!good) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connect: what polygons cover of the facets, cells joined where nothing divides them, and the fine complex of
-// what is left.
+// Connect: what polygons cover of the facets, cells joined where nothing divides them, and the fine complex
+// of what is left.
 #ifndef ENF_BUILD_CONNECT_H
 #define ENF_BUILD_CONNECT_H
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where polygons of a closed world meet, their planes have cut the cells, so most facets lie wholly inside or
-// wholly outside of a polygon: that takes the sides of their corners only. The others are clipped, in the plane.
+// wholly outside of a polygon: that takes the sides of their corners only. The others are clipped, in the
+// plane.
 #include "build/cover.h"
 
 #include "base/array.h"
@@ -160,8 +161,8 @@ static bool cover_hits(finder *f, const enf_crew *crew, bool *stopped) {
     return true;
 }
 
-bool enf_covers_find(enf_covers *covers, const enf_arrangement *arrangement, const enf_crew *crew, enf_pool *pool,
-                     bool *stopped) {
+bool enf_covers_find(enf_covers *covers, const enf_arrangement *arrangement, const enf_crew *crew,
+                     enf_pool *pool, bool *stopped) {
     memset(covers, 0, sizeof *covers);
     *stopped = false;
     const enf_subdivision *space = &arrangement->subdivision;

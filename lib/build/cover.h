@@ -20,8 +20,8 @@ typedef struct enf_covers {
 } enf_covers;
 
 /// Finds them. The pool's geometry must be the subdivision's; it receives the vertices that only covers have.
-bool enf_covers_find(enf_covers *covers, const enf_arrangement *arrangement, const enf_crew *crew, enf_pool *pool,
-                     bool *stopped);
+bool enf_covers_find(enf_covers *covers, const enf_arrangement *arrangement, const enf_crew *crew,
+                     enf_pool *pool, bool *stopped);
 void enf_covers_free(enf_covers *covers);
 
 /// A facet's outline in the pool, without corners on straight lines.

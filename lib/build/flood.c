@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Most polygons of a finely drawn world are facets of the triangulation already, or tiled by a few: these are
-// looked up. Others are flooded: the tetrahedra that a polygon's inside meets are connected through facets, so a
-// walk from one of its corners that enters every neighbour it may meet finds them all, in time proportional to
-// what it finds. Polygons go plane by plane, so that a point is held against each plane once.
+// looked up. Others are flooded: the tetrahedra that a polygon's inside meets are connected through facets,
+// so a walk from one of its corners that enters every neighbour it may meet finds them all, in time
+// proportional to what it finds. Polygons go plane by plane, so that a point is held against each plane once.
 #include "build/flood.h"
 
 #include "base/array.h"
@@ -37,7 +37,7 @@ typedef struct flooder {
     enf_polygon_lines lines;
     int32_t rank, plane, plane_mark;
     enf_plane_filter filter;
-    int32_t *stamp;      ///< per tetrahedron: the last polygon + 1 that looked at it
+    int32_t *stamp; ///< per tetrahedron: the last polygon + 1 that looked at it
     int32_t *stack;
     size_t stack_capacity;
     bool failed;
@@ -91,8 +91,8 @@ static int side_of_plane(flooder *w, int32_t point) {
     return sign;
 }
 
-/// How the polygon's inside meets a tetrahedron. `sign` receives the sides of its plane on which the corners lie
-/// and `sides` (unless they are all on one) those of its lines.
+/// How the polygon's inside meets a tetrahedron. `sign` receives the sides of its plane on which the corners
+/// lie and `sides` (unless they are all on one) those of its lines.
 static contact meets(flooder *w, const int32_t corner[4], int sign[4], enf_line_sides sides[4]) {
     int behind = 0, front = 0;
     for (int k = 0; k < 4; k++) {
@@ -130,8 +130,8 @@ static bool facet_separates(const flooder *w, const int32_t corner[4]) {
     return false;
 }
 
-/// Can the polygon's inside reach through the facet opposite corner k? Some part of the facet that is in the plane
-/// must be inside each of the polygon's lines.
+/// Can the polygon's inside reach through the facet opposite corner k? Some part of the facet that is in the
+/// plane must be inside each of the polygon's lines.
 static bool reaches_through(const flooder *w, const int sign[4], const enf_line_sides sides[4], int k) {
     int behind = 0, front = 0;
     for (int i = 1; i < 4; i++) {

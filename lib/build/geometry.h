@@ -35,10 +35,11 @@ typedef struct enf_crossing {
 /// shares the former.
 typedef struct enf_geometry {
     int32_t point_count;
-    const double *points;      ///< xyz
-    int32_t (*planes)[3];      ///< as in enf_complex
+    const double *points; ///< xyz
+    int32_t (*planes)[3]; ///< as in enf_complex
     int32_t plane_count;
-    /// Of planes filter_first .. filter_end - 1; filter_end = 0: of all. Others are made when they are needed.
+    /// Of planes filter_first .. filter_end - 1; filter_end = 0: of all. Others are made when they are
+    /// needed.
     enf_plane_filter *filters;
     int32_t filter_first, filter_end;
 

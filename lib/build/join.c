@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A closed surface that is convex at every edge is convex (H. Tietze 1928, S. Nakajima 1928); two convex cells
-// that share facets can only fail to be so at the edges around these. The same test decides flips of tetrahedra.
+// A closed surface that is convex at every edge is convex (H. Tietze 1928, S. Nakajima 1928); two convex
+// cells that share facets can only fail to be so at the edges around these. The same test decides flips of
+// tetrahedra.
 #include "build/join.h"
 
 #include "base/array.h"
@@ -19,7 +20,8 @@ uint8_t *enf_tetrahedra_reflex(const enf_tet_mesh *tets, const double *points, c
     for (int32_t f = 0; reflex && f < tets->facet_count; f++) {
         int32_t behind = tets->facet_sides[f][0], front = tets->facet_sides[f][1];
         if (behind < 0 || front < 0 || !may[behind] || !may[front]) continue;
-        const double *p = points + 3 * (size_t)apex(tets, behind, f), *q = points + 3 * (size_t)apex(tets, front, f);
+        const double *p = points + 3 * (size_t)apex(tets, behind, f),
+                     *q = points + 3 * (size_t)apex(tets, front, f);
         for (int i = 0; i < 3; i++) {
             const double *a = points + 3 * (size_t)tets->facet_corners[f][i],
                          *b = points + 3 * (size_t)tets->facet_corners[f][(i + 1) % 3];
@@ -64,8 +66,8 @@ static bool folds_in(enf_subdivision *s, int32_t a, int32_t b, int32_t cell) {
     return side == 0 || (side < 0) == (s->facets[facet].cell[0] == cell);
 }
 
-/// Is the union of the two cells of facet f convex at its edges? Edges to another facet between the same two are
-/// inside the wall.
+/// Is the union of the two cells of facet f convex at its edges? Edges to another facet between the same two
+/// are inside the wall.
 static bool convex_around(enf_subdivision *s, int32_t f) {
     int32_t cell[2] = {s->facets[f].cell[0], s->facets[f].cell[1]}, beside[2];
     int32_t first = s->facets[f].first, h = first;
@@ -128,7 +130,8 @@ static void join_cells(enf_subdivision *s, int32_t behind, int32_t front) {
 int32_t enf_subdivision_join(enf_subdivision *s, const uint8_t *covered, const uint8_t *may,
                              const uint8_t *reflex, int32_t *into) {
     int32_t joined = 0;
-    // The last cuts first: they divide the smallest cells. A second round would find one or two in a hundred more.
+    // The last cuts first: they divide the smallest cells. A second round would find one or two in a hundred
+    // more.
     for (size_t i = s->facet_count; i-- > 0;) {
         enf_share *facet = &s->facets[i];
         if (facet->first < 0 || covered[i] || facet->cell[0] < 0 || facet->cell[1] < 0) continue;

@@ -2,9 +2,10 @@
 // The split of the thesis (4.2.1) done exactly: each polygon cuts the cells that it really enters, and only
 // those, by its plane; what is left of a tetrahedron is a small BSP tree (Fuchs, Kedem and Naylor 1980).
 //
-// A tetrahedron's tree of cuts leads each polygon to the cells that it may enter; whether the polygon's inside
-// meets a cell's is decided in the plane, by the separating axis theorem for two convex polygons: flood.c has
-// asked for the tetrahedron's facets, the tree for the cuts, and here it is the polygon's own lines.
+// A tetrahedron's tree of cuts leads each polygon to the cells that it may enter; whether the polygon's
+// inside meets a cell's is decided in the plane, by the separating axis theorem for two convex polygons:
+// flood.c has asked for the tetrahedron's facets, the tree for the cuts, and here it is the polygon's own
+// lines.
 #include "build/split.h"
 
 #include "base/array.h"
@@ -58,13 +59,14 @@ static bool line_lets_in(cutter *c, int32_t line) {
     return false;
 }
 
-/// Does the polygon's inside meet the part of its plane that is in the cell, as far as the polygon's edges tell?
-/// It does not if a line has no corner of that part strictly inside.
+/// Does the polygon's inside meet the part of its plane that is in the cell, as far as the polygon's edges
+/// tell? It does not if a line has no corner of that part strictly inside.
 static bool lines_let_in(cutter *c) {
     enf_subdivision *space = c->space;
     enf_geometry *geometry = &space->geometry;
     uint32_t wanted = c->lines.wanted, sure = 0, maybe = 0;
-    size_t vertices = (size_t)geometry->point_count + (size_t)geometry->crossing_count + space->cut_edge_count;
+    size_t vertices =
+        (size_t)geometry->point_count + (size_t)geometry->crossing_count + space->cut_edge_count;
     if (!enf_polygon_lines_reserve(&c->lines, vertices)) {
         c->failed = true;
         return false;
@@ -118,7 +120,8 @@ static void cut_cell(cutter *c, int32_t cell) {
     }
 }
 
-// ---------------------------------------------------------------------------------------------- one tetrahedron
+// ---------------------------------------------------------------------------------------------- one
+// tetrahedron
 
 /// The sides of a plane on which the polygon's corners lie: 1 some behind, 2 some in front.
 static int corner_sides(const cutter *c, int32_t plane) {
@@ -157,8 +160,8 @@ static void cut_tetrahedron(cutter *c, int32_t t) {
 
 // ---------------------------------------------------------------------------------------------- all of them
 
-/// Tetrahedra that will be cut are joined first where that makes a convex cell: a polygon then cuts one cell, not
-/// several. Returns the cell that each tetrahedron is in.
+/// Tetrahedra that will be cut are joined first where that makes a convex cell: a polygon then cuts one cell,
+/// not several. Returns the cell that each tetrahedron is in.
 static int32_t *join_tetrahedra(cutter *c, const enf_candidates *candidates) {
     enf_arrangement *arrangement = c->arrangement;
     size_t count = (size_t)arrangement->tets.count;
@@ -188,8 +191,8 @@ static int compare_ranks(const void *a, const void *b) {
     return (x->rank > y->rank) - (x->rank < y->rank);
 }
 
-/// The candidates of the tetrahedra in a cell, each once. `next` lists them, from the one that gave the cell its
-/// number.
+/// The candidates of the tetrahedra in a cell, each once. `next` lists them, from the one that gave the cell
+/// its number.
 static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t *next, int32_t first) {
     size_t count = 0, kept = 0;
     for (int32_t t = first; t >= 0; t = next[t]) {
@@ -254,7 +257,8 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     cutter c = {.arrangement = arrangement, .space = &arrangement->subdivision};
     enf_candidates candidates;
     bool stopped, good = enf_candidates_find(&candidates, arrangement, crew, &stopped);
-    good = good && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets);
+    good = good && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets,
+                                         (size_t)candidates.offset[arrangement->tets.count]);
     if (good) stopped = !cut_all(&c, &candidates, crew);
     good = good && !c.failed;
     enf_candidates_free(&candidates);

@@ -7,9 +7,10 @@
 #include <string.h>
 
 void enf_subdivision_free(enf_subdivision *s) {
-    void *arrays[] = {s->geometry.crossings, s->halves,      s->facets,     s->edge_half,   s->edge_slot,
-                      s->cell_facet,         s->cell_parent, s->node_plane, s->node_child,  s->tetrahedron_root,
-                      s->vertex_sign,        s->shares,      s->cut_edges,  s->outline,     s->outline_at, s->touching};
+    void *arrays[] = {s->geometry.crossings, s->halves,           s->facets,      s->edge_half,
+                      s->edge_slot,          s->cell_facet,       s->cell_parent, s->node_plane,
+                      s->node_child,         s->tetrahedron_root, s->vertex_sign, s->shares,
+                      s->cut_edges,          s->outline,          s->outline_at,  s->touching};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     memset(s, 0, sizeof *s);
 }
@@ -55,7 +56,8 @@ static bool pair_halves(enf_subdivision *s) {
         for (int32_t h = list[low], next; h >= 0; h = next) {
             enf_half *half = &s->halves[h];
             next = half->radial;
-            int32_t to = s->halves[half->next].vertex, high = half->vertex == (int32_t)low ? to : half->vertex;
+            int32_t to = s->halves[half->next].vertex,
+                    high = half->vertex == (int32_t)low ? to : half->vertex;
             if (edge_of[high] < first_edge) {
                 edge_of[high] = (int32_t)s->edge_count++;
                 s->edge_half[edge_of[high]] = -1;
@@ -70,7 +72,8 @@ static bool pair_halves(enf_subdivision *s) {
     return true;
 }
 
-bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, const enf_tet_mesh *tets) {
+bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, const enf_tet_mesh *tets,
+                           size_t cuts) {
     memset(s, 0, sizeof *s);
     s->geometry = *geometry;
     size_t facets = (size_t)tets->facet_count, count = (size_t)tets->count;
@@ -78,13 +81,16 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
     s->tetrahedron_count = tets->count;
     s->tetrahedron_root = enf_array_new(count, sizeof *s->tetrahedron_root);
     // Edges: as many as points and facets less tetrahedra and one (Euler), if the hull is a ball.
-    if (!s->tetrahedron_root || !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 1) ||
-        !enf_array_reserve(s->facets, s->facet_capacity, facets + 1) ||
-        !enf_array_reserve(s->edge_half, s->edge_capacity, points + facets + 1) ||
-        !enf_array_reserve(s->cell_facet, s->cell_capacity, count + 1) ||
-        !enf_array_reserve(s->cell_parent, s->parent_capacity, count + 1) ||
-        !enf_array_reserve(s->vertex_sign, s->sign_capacity, points + 1) ||
-        !enf_array_reserve(s->outline_at, s->outline_at_capacity, points + 1)) {
+    if (!s->tetrahedron_root || !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 12 * cuts + 1) ||
+        !enf_array_reserve(s->facets, s->facet_capacity, facets + 3 * cuts + 1) ||
+        !enf_array_reserve(s->edge_half, s->edge_capacity, points + facets + 3 * cuts + 1) ||
+        !enf_array_reserve(s->cell_facet, s->cell_capacity, count + cuts + 1) ||
+        !enf_array_reserve(s->cell_parent, s->parent_capacity, count + cuts + 1) ||
+        !enf_array_reserve(s->node_plane, s->node_capacity, cuts) ||
+        !enf_array_reserve(s->node_child, s->child_capacity, cuts) ||
+        !enf_array_reserve(s->vertex_sign, s->sign_capacity, points + cuts + 1) ||
+        !enf_array_reserve(s->outline_at, s->outline_at_capacity, points + cuts + 1) ||
+        !enf_array_reserve(s->geometry.crossings, s->geometry.crossing_capacity, cuts + 1)) {
         return false;
     }
     memset(s->vertex_sign, 0, points * sizeof *s->vertex_sign);
@@ -119,7 +125,7 @@ void enf_subdivision_take_plane(enf_subdivision *s, int32_t plane) {
 
 static bool note_cut_edge(enf_subdivision *s, int32_t half, int32_t from, int32_t to) {
     int32_t edge = s->halves[half].edge, slot = s->edge_slot[edge];
-    if (slot >= 0 && (size_t)slot < s->cut_edge_count && s->cut_edges[slot].edge == edge) return true;
+    if ((size_t)slot < s->cut_edge_count && s->cut_edges[slot].edge == edge) return true;
     if (!enf_array_reserve(s->cut_edges, s->cut_edge_capacity, s->cut_edge_count + 1)) return false;
     s->edge_slot[edge] = (int32_t)s->cut_edge_count;
     s->cut_edges[s->cut_edge_count++] = (enf_cut_edge){from, to, half, edge, -1};
@@ -132,7 +138,7 @@ int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
     if (s->edge_capacity > s->slot_capacity) {
         size_t known = s->slot_capacity;
         if (!enf_array_reserve(s->edge_slot, s->slot_capacity, s->edge_capacity)) return -1;
-        memset(s->edge_slot + known, 0xff, (s->slot_capacity - known) * sizeof *s->edge_slot);
+        memset(s->edge_slot + known, 0, (s->slot_capacity - known) * sizeof *s->edge_slot);
     }
     for (int32_t f = s->cell_facet[cell], next; f >= 0; f = next) {
         const enf_share *facet = &s->facets[f];
@@ -291,8 +297,8 @@ static bool sort_facet(enf_subdivision *s, int32_t f, int32_t cell, int32_t ahea
     if (front || touching < 0) return true;
     for (h = first;;) { // an edge on the plane may be several
         int32_t next = s->halves[h].next;
-        if ((s->vertex_sign[s->halves[h].vertex] & 3) == 1 && (s->vertex_sign[s->halves[next].vertex] & 3) == 1 &&
-            !outline_from(s, h, side, plane)) {
+        if ((s->vertex_sign[s->halves[h].vertex] & 3) == 1 &&
+            (s->vertex_sign[s->halves[next].vertex] & 3) == 1 && !outline_from(s, h, side, plane)) {
             return false;
         }
         h = next;

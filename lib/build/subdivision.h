@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Space while it is being cut: convex cells, the facets that they share, and the half-edges around these, as a
-// radial-edge structure (K. Weiler, "The radial edge structure", 1988). Every vertex and every edge exists
+// Space while it is being cut: convex cells, the facets that they share, and the half-edges around these, as
+// a radial-edge structure (K. Weiler, "The radial edge structure", 1988). Every vertex and every edge exists
 // once, however many cells meet there, so a cut asks about each of them once, and neighbours always fit.
 //
 // Cuts are local: a cut divides one cell, and of the others only facets and edges that they share with it.
@@ -69,16 +69,17 @@ typedef struct enf_subdivision {
     size_t touching_count, touching_capacity;
     struct enf_outline {
         int32_t from, to, edge, edge_plane;
-    } *outline;
+    } * outline;
     size_t outline_count, outline_capacity;
     int32_t *outline_at; ///< per vertex: the outline's part that starts there
     size_t outline_at_capacity;
 } enf_subdivision;
 
-/// The tetrahedra themselves as cells, cell t for tetrahedron t. The geometry must hold points and the planes of
-/// the tetrahedra's facets, plane f for facet f. False without memory; free it in any case.
+/// The tetrahedra themselves as cells, cell t for tetrahedron t. The geometry must hold points and the planes
+/// of the tetrahedra's facets, plane f for facet f. About how many cuts there will be saves moving arrays.
+/// False without memory; free it in any case.
 bool enf_subdivision_start(enf_subdivision *subdivision, const enf_geometry *geometry,
-                           const enf_tet_mesh *tets);
+                           const enf_tet_mesh *tets, size_t cuts);
 void enf_subdivision_free(enf_subdivision *subdivision);
 
 /// From now on cells are held against this plane.
@@ -88,8 +89,7 @@ void enf_subdivision_take_plane(enf_subdivision *subdivision, int32_t plane);
 static inline int enf_subdivision_sign(enf_subdivision *subdivision, int32_t vertex) {
     int32_t known = subdivision->vertex_sign[vertex];
     if (known >> 2 == subdivision->plane_mark) return (known & 3) - 1;
-    int sign =
-        enf_geometry_side_by(&subdivision->geometry, vertex, subdivision->plane, &subdivision->filter);
+    int sign = enf_geometry_side_by(&subdivision->geometry, vertex, subdivision->plane, &subdivision->filter);
     subdivision->vertex_sign[vertex] = subdivision->plane_mark * 4 + sign + 1;
     return sign;
 }
@@ -104,8 +104,8 @@ int32_t enf_subdivision_cut_vertex(enf_subdivision *subdivision, size_t i);
 /// Forgets the vertices that have been made for a cell which is not cut after all.
 void enf_subdivision_leave(enf_subdivision *subdivision);
 
-/// Cuts the cell that the plane was last found to cross: a new node, the cell behind keeps its number, the one
-/// in front is new. Returns the node, or -1 without memory (the subdivision can only be freed then).
+/// Cuts the cell that the plane was last found to cross: a new node, the cell behind keeps its number, the
+/// one in front is new. Returns the node, or -1 without memory (the subdivision can only be freed then).
 int32_t enf_subdivision_cut(enf_subdivision *subdivision, int32_t cell);
 
 /// The plane that a facet lies on.

@@ -5,8 +5,8 @@
 
 #include "enfilade/base.h"
 
-/// Sorts tetrahedra along a space-filling curve through their points (xyz, grid steps), those at the same place
-/// as they were before: what the later stages touch together lies together. False without memory.
+/// Sorts tetrahedra along a space-filling curve through their points (xyz, grid steps), those at the same
+/// place as they were before: what the later stages touch together lies together. False without memory.
 bool enf_tetrahedra_sort(int32_t (*corners)[4], size_t count, const double *points, size_t point_count);
 
 #endif
