@@ -135,10 +135,11 @@ static bool note_cut_edge(enf_subdivision *s, int32_t half, int32_t from, int32_
 int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
     bool behind = false, front = false;
     s->share_count = s->cut_edge_count = s->touching_count = 0;
-    if (s->edge_capacity > s->slot_capacity) {
-        size_t known = s->slot_capacity;
-        if (!enf_array_reserve(s->edge_slot, s->slot_capacity, s->edge_capacity)) return -1;
-        memset(s->edge_slot + known, 0, (s->slot_capacity - known) * sizeof *s->edge_slot);
+    if (s->edge_capacity > s->slot_capacity) { // what it held is not needed any more
+        free(s->edge_slot);
+        s->edge_slot = enf_array_zeroed(s->edge_capacity, sizeof *s->edge_slot);
+        s->slot_capacity = s->edge_slot ? s->edge_capacity : 0;
+        if (!s->edge_slot) return -1;
     }
     for (int32_t f = s->cell_facet[cell], next; f >= 0; f = next) {
         const enf_share *facet = &s->facets[f];
