@@ -43,7 +43,7 @@ static int locate_all(const enf_world *world, bool with_kind) {
             break;
         }
         enf_place place = enf_world_locate(world, point, hint);
-        hint = place.fine_cell;
+        hint = place.tetrahedron;
         printf("%" PRId32 "%s%s\n", place.cell, with_kind ? " " : "",
                with_kind ? enf_world_kind_name(place.kind) : "");
     }

@@ -116,6 +116,7 @@ static void put_graph(enf_json *json, const cli_job *job, const cli_counts *coun
     enf_json_whole(json, "tetrahedra", build->complex.tetrahedron_count);
     enf_json_whole(json, "cells_split", build->complex.tetrahedra_cut);
     enf_json_whole(json, "fine_cells", build->complex.cell_count);
+    enf_json_whole(json, "cells_joined", build->complex.cells_joined);
     put_regions(json, build, counts);
     enf_json_whole(json, "fine_cells_discarded", counts->fine_discarded);
     enf_json_whole(json, "fine_cells_active", counts->fine_active);

@@ -95,29 +95,111 @@ static bool dent_hull(world *w, int index) {
     return true;
 }
 
-static bool turn_face_corners(world *w, int index) {
-    enf_file_corner *corner = WRITABLE(w->view.face_corners), swap = corner[0];
+static bool turn_facet_corners(world *w, int index) {
+    enf_file_corner *corner = WRITABLE(w->view.facet_corners), swap = corner[0];
     corner[0] = corner[1];
     corner[1] = swap;
     return index == 0;
 }
 
-static bool swap_face_sides(world *w, int index) {
-    uint8_t *side = WRITABLE(w->view.face_side);
-    side[0] ^= 1;
+/// A facet gets the same cell on both sides, or goes over to the cell behind it.
+static bool fold_facet(world *w, int index) {
+    int32_t(*fine)[2] = WRITABLE(w->view.facet_fine);
+    fine[0][0] = fine[0][1];
     return index == 0;
 }
 
-static bool lose_face(world *w, int index) {
-    int32_t *first = WRITABLE(w->view.fine_face);
-    first[1]--; // the last face of cell 0 goes to cell 1
+static bool lose_facet(world *w, int index) {
+    int32_t *first = WRITABLE(w->view.fine_facet);
+    first[1]--; // the last facet of cell 0 goes to cell 1
     return index == 0;
 }
 
-static bool unmark_hull(world *w, int index) {
-    uint8_t *hull = WRITABLE(w->view.facet_hull);
-    if (index >= w->view.facet_count) return false;
-    hull[index] ^= 1;
+static bool unlist_facet(world *w, int index) {
+    int32_t *list = WRITABLE(w->view.fine_facets);
+    list[1] = list[0];
+    return index == 0;
+}
+
+/// The cells on both sides of a facet change places.
+static bool turn_facet(world *w, int index) {
+    int32_t(*fine)[2] = WRITABLE(w->view.facet_fine), f = 0;
+    while (fine[f][0] < 0 || fine[f][1] < 0) f++;
+    int32_t swap = fine[f][0];
+    fine[f][0] = fine[f][1];
+    fine[f][1] = swap;
+    return index == 0;
+}
+
+/// A facet becomes another one in its plane, of the same cell: it has a hole, and another part twice.
+static bool repeat_facet(world *w, int index) {
+    const enf_file_view *view = &w->view;
+    enf_file_corner *corner = WRITABLE(view->facet_corners);
+    int found = 0;
+    for (int32_t f = 0; f + 1 < view->facet_count; f++) {
+        for (int32_t g = 0; g < view->facet_count; g++) {
+            int64_t a = view->facet_offset[f], end = view->facet_offset[f + 1], b = view->facet_offset[g];
+            bool alike = f != g && view->facet_plane[f] == view->facet_plane[g] &&
+                         view->facet_offset[g + 1] - b == end - a;
+            if (!alike || found++ < index) continue;
+            memcpy(corner + a, corner + b, (size_t)(end - a) * sizeof *corner);
+            return true;
+        }
+    }
+    return false;
+}
+
+/// A section loses its last elements.
+static void shorten(world *w, const void *array, int64_t elements) {
+    enf_file_section *sections = WRITABLE(w->view.sections);
+    for (uint32_t s = 0; s < w->view.header->section_count; s++) {
+        if (w->view.bytes + sections[s].offset != array) continue;
+        sections[s].count -= (uint64_t)elements;
+        sections[s].size -= (uint64_t)elements * sections[s].element_size;
+    }
+}
+
+static int32_t without(int32_t cell, int32_t gone, int32_t instead) {
+    return cell == gone ? instead : cell - (cell > gone);
+}
+
+/// A fine cell disappears, as if the world had a bubble: the facets around it face the outside.
+static bool drop_cell(world *w, int index) {
+    const enf_file_view *view = &w->view;
+    int32_t(*fine)[2] = WRITABLE(view->facet_fine), *first = WRITABLE(view->fine_facet);
+    int32_t *list = WRITABLE(view->fine_facets), *root = WRITABLE(view->tetrahedron_root);
+    int32_t(*child)[2] = WRITABLE(view->node_child), *region = WRITABLE(view->fine_region);
+    int32_t *cell = WRITABLE(view->fine_cell), *seen = WRITABLE(view->seen);
+    int64_t *seen_first = WRITABLE(view->seen_offset);
+    enf_file_spawn *spawns = WRITABLE(view->spawns);
+    int32_t count = view->fine_count, facets = first[index + 1] - first[index];
+    int64_t sights = seen_first[index + 1] - seen_first[index];
+    if (index >= count - 1) return false;
+    for (int32_t i = first[index]; i < view->fine_facet_count - facets; i++) list[i] = list[i + facets];
+    for (int64_t i = seen_first[index]; i < view->seen_count - sights; i++) seen[i] = seen[i + sights];
+    for (int32_t c = index + 1; c < count; c++) {
+        first[c] = first[c + 1] - facets;
+        seen_first[c] = seen_first[c + 1] - sights;
+        region[c - 1] = region[c];
+        cell[c - 1] = cell[c];
+    }
+    for (int32_t i = 0; i < 2 * view->facet_count; i++)
+        fine[i / 2][i % 2] = without(fine[i / 2][i % 2], index, -1);
+    for (int32_t t = 0; t < view->tetrahedron_count; t++) {
+        if (root[t] < 0) root[t] = -1 - without(-1 - root[t], index, 0);
+    }
+    for (int32_t i = 0; i < 2 * view->node_count; i++) {
+        int32_t *at = &child[i / 2][i % 2];
+        if (*at < 0) *at = -1 - without(-1 - *at, index, 0);
+    }
+    for (int32_t s = 0; s < view->spawn_count; s++)
+        spawns[s].fine_cell = without(spawns[s].fine_cell, index, -1);
+    shorten(w, list, facets);
+    shorten(w, seen, sights);
+    shorten(w, first, 1);
+    shorten(w, seen_first, 1);
+    shorten(w, region, 1);
+    shorten(w, cell, 1);
     return true;
 }
 
@@ -126,6 +208,34 @@ static bool swap_children(world *w, int index) {
     child[0] = child[1];
     child[1] = swap;
     return index == 0;
+}
+
+/// Leaves of one tetrahedron, or of two, change places.
+static bool swap_leaves(world *w, int index) {
+    int32_t *root = WRITABLE(w->view.tetrahedron_root), (*child)[2] = WRITABLE(w->view.node_child);
+    int32_t a = 0, b = 0;
+    while (root[a] >= 0) a++;
+    while (child[b][0] >= 0) b++;
+    int32_t *other = index == 0 ? &child[b][0] : &root[a + 1], swap = *other;
+    *other = root[a];
+    root[a] = swap;
+    return index < 2;
+}
+
+/// A cell has no leaf any more.
+static bool lose_leaf(world *w, int index) {
+    int32_t *root = WRITABLE(w->view.tetrahedron_root), a = 0;
+    while (root[a] >= 0 || root[a + 1] >= 0) a++;
+    root[a] = root[a + 1];
+    return index == 0;
+}
+
+/// A cut goes along a face of its tetrahedron: nothing is left on one side.
+static bool move_cut(world *w, int index) {
+    int32_t *plane = WRITABLE(w->view.node_plane);
+    if (index >= w->view.plane_count) return false;
+    plane[0] = index;
+    return true;
 }
 
 static bool turn_cover(world *w, int index) {
@@ -157,13 +267,9 @@ static bool move_polygon(world *w, int index) {
     return true;
 }
 
-static bool swap_piece_faces(world *w, int index) {
-    int32_t(*face)[2] = WRITABLE(w->view.piece_face);
-    int32_t p = 0;
-    while (face[p][0] < 0 || face[p][1] < 0) p++;
-    int32_t swap = face[p][0];
-    face[p][0] = face[p][1];
-    face[p][1] = swap;
+static bool move_piece(world *w, int index) {
+    int32_t *facet = WRITABLE(w->view.piece_facet);
+    facet[w->view.piece_count - 1]--;
     return index == 0;
 }
 
@@ -387,15 +493,21 @@ const check_kind check_kinds[] = {
     {"tetrahedralize: faces", lose_neighbour},
     {"tetrahedralize: faces", repeat_tetrahedron},
     {"tetrahedralize: hull", dent_hull},
-    {"split: cells", turn_face_corners},
-    {"split: cells", swap_face_sides},
-    {"split: cells", lose_face},
-    {"split: tiling", unmark_hull},
+    {"split: facets", turn_facet_corners},
+    {"split: facets", fold_facet},
+    {"split: facets", lose_facet},
+    {"split: facets", unlist_facet},
+    {"split: cells", turn_facet},
+    {"split: cells", repeat_facet},
+    {"split: hull", drop_cell},
     {"split: trees", swap_children},
+    {"split: trees", swap_leaves},
+    {"split: trees", lose_leaf},
+    {"split: trees", move_cut},
     {"split: covers", turn_cover},
     {"split: covers", move_cover},
     {"split: polygons", move_polygon},
-    {"connect: pieces", swap_piece_faces},
+    {"connect: pieces", move_piece},
     {"connect: pieces", turn_piece_corners},
     {"connect: areas", repeat_piece},
     {"connect: occlusion", open_piece},

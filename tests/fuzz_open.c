@@ -51,15 +51,26 @@ static void use_loops(const enf_file_view *file, int32_t count, const int64_t *o
 
 static void use_exact(const enf_file_view *file) {
     if (!file->has_exact) return;
-    use_loops(file, file->face_count, file->face_offset, file->face_corners);
+    use_loops(file, file->facet_count, file->facet_offset, file->facet_corners);
     use_loops(file, file->cover_count, file->cover_offset, file->cover_corners);
     use_loops(file, file->piece_count, file->piece_offset, file->piece_corners);
     use_loops(file, file->portal_loop_count, file->portal_loop_offset, file->portal_loop_corners);
     for (int32_t i = 0; i < file->fine_count; i++) {
-        for (int32_t k = file->fine_face[i]; k < file->fine_face[i + 1]; k++)
-            sink += file->facet_plane[file->face_facet[k]];
+        for (int32_t k = file->fine_facet[i]; k < file->fine_facet[i + 1]; k++)
+            sink += file->facet_plane[file->fine_facets[k]];
         for (int64_t k = file->seen_offset[i]; k < file->seen_offset[i + 1]; k++)
             sink += file->mesh_polygon_source[file->seen[k]];
+    }
+}
+
+static void use_sides(const enf_file_view *file) {
+    for (int32_t f = 0; file->has_exact && f < file->facet_count; f++) {
+        for (int side = 0; side < 2; side++) {
+            if (file->facet_fine[f][side] >= 0) sink += file->fine_facet[file->facet_fine[f][side]];
+        }
+        for (int32_t c = file->facet_cover[f]; c < file->facet_cover[f + 1]; c++) sink += file->cover_side[c];
+        for (int32_t p = file->facet_piece[f]; p < file->facet_piece[f + 1]; p++)
+            sink += file->facet_plane[file->piece_facet[p]];
     }
 }
 
@@ -71,7 +82,7 @@ static void use_locate(const enf_world *world, const enf_file_view *file) {
             at[file->frame->axis[a]] = file->points[i][a] * file->frame->step * file->frame->sign[a];
         for (int k = 0; k < 2; k++, at[k] += 0.3 * file->frame->step) {
             enf_place place = enf_world_locate(world, at, hint);
-            hint = place.fine_cell;
+            hint = place.tetrahedron;
             if (place.cell >= 0) sink += file->cells[place.cell].volume;
             if (place.region >= 0) sink += file->regions[place.region].volume;
             sink += strlen(enf_world_kind_name(place.kind));
@@ -89,6 +100,7 @@ static void use(const enf_world *world) {
         use_triangles(world, file, &file->cells[i]);
     }
     use_exact(file);
+    use_sides(file);
     use_locate(world, file);
 }
 

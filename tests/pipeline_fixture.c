@@ -161,11 +161,13 @@ uint64_t pipeline_fingerprint(const enf_build *build) {
     HASH(c->tetrahedra, c->tetrahedron_count);
     HASH(c->tetrahedron_root, c->tetrahedron_count);
     HASH(c->node_child, c->node_count);
-    HASH(c->cell_face, c->cell_count + 1);
-    HASH(c->faces.corners, c->faces.corner_count);
-    HASH(c->face_facet, c->faces.count);
+    HASH(c->cell_facet, c->cell_count + 1);
+    HASH(c->cell_facets, c->cell_facet[c->cell_count]);
+    HASH(c->facets.corners, c->facets.corner_count);
+    HASH(c->facet_cell, c->facet_count);
+    HASH(c->covers.corners, c->covers.corner_count);
     HASH(c->pieces.corners, c->pieces.corner_count);
-    HASH(c->piece_face, c->pieces.count);
+    HASH(c->piece_facet, c->pieces.count);
     HASH(c->piece_cover, c->pieces.count);
     HASH(c->cover_polygon, c->covers.count);
     HASH(c->seen, c->seen_offset[c->cell_count]);

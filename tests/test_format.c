@@ -431,11 +431,17 @@ static void each_kind_of_bad_index_is_named(void **state) {
     expect_refusal(s, "BOX", 0, 0x7fc00000);   // NaN
     expect_refusal(s, "POINT", 4, 0x7ff80000); // NaN
     expect_refusal(s, "PLANE", 8, -4);
-    expect_refusal(s, "FACEOFF", 8, 1 << 20);
-    expect_refusal(s, "FACEOFF", 0, 1);
-    expect_refusal(s, "FINEFACE", 4, -1);
-    expect_refusal(s, "FACESIDE", 0, 2);
-    expect_refusal(s, "FACECORN", 0, 27);
+    expect_refusal(s, "FACTOFF", 8, 1 << 20);
+    expect_refusal(s, "FACTOFF", 0, 1);
+    expect_refusal(s, "FACTCORN", 0, 27);
+    expect_refusal(s, "FACTFINE", 0, 49); // no such fine cell
+    expect_refusal(s, "FACTFINE", 4, -2);
+    expect_refusal(s, "FINEFACT", 4, -1);
+    expect_refusal(s, "FINELIST", 0, -1);
+    expect_refusal(s, "FINELIST", 4, 1 << 20);
+    expect_refusal(s, "PIECFACT", 0, -1); // a piece has a facet
+    expect_refusal(s, "PIECFACT", 0, 1 << 20);
+    expect_refusal(s, "COVERSID", 0, 2);
     expect_refusal(s, "PORTAL", 0, 1); // its twin no longer leads back
     expect_refusal(s, "PORTPOLY", 44, 2);
     expect_refusal(s, "CELL", 76, 2);

@@ -71,7 +71,7 @@ static int32_t locate_by_looking_everywhere(const fixture *f, const int64_t at[3
     const enf_complex *c = &f->build.complex;
     int32_t best = -1;
     for (int32_t fine = 0; fine < c->cell_count; fine++) {
-        int32_t tetrahedron = c->cell_tetrahedron[fine];
+        int32_t tetrahedron = fixture_tetrahedron_of(f, fine);
         if (!tetrahedron_touches(c, tetrahedron, at)) continue;
         if (tetrahedron == f->cut) {
             const int32_t *plane = c->planes[c->node_plane[0]];
@@ -96,6 +96,7 @@ static void check_point(const opened *o, const int64_t at[3], int32_t hint) {
                  place.fine_cell, expected);
     const enf_build *build = &o->fixture.build;
     assert_int_equal(place.cell, expected < 0 ? -1 : build->cell_of[expected]);
+    assert_int_equal(place.tetrahedron < 0, expected < 0);
     assert_int_equal(place.region, expected < 0 ? -1 : build->regions.cell_region[expected]);
     assert_int_equal(place.kind, expected < 0 ? ENF_WORLD_OUTSIDE : (int)build->regions.kind[place.region]);
 }
@@ -118,7 +119,8 @@ static void random_points_are_found_where_they_are(void **state) {
             for (int a = 0; a < 3; a++)
                 at[a] = ((int64_t)(next_random(&seed) % (20 * FINE_GRID)) - 2 * FINE_GRID) / grain * grain;
             check_point(&o, at, -1);
-            check_point(&o, at, (int32_t)(next_random(&seed) % (uint64_t)o.fixture.build.complex.cell_count));
+            check_point(&o, at,
+                        (int32_t)(next_random(&seed) % (uint64_t)o.fixture.build.complex.tetrahedron_count));
         }
         close_fixture(&o);
     }
@@ -152,7 +154,6 @@ static void rounded_face_centres_are_never_outside(void **state) {
     (void)state;
     const enf_frame frame = {0x1p-60, {1, 0, 2}, {1, 1, -1}, 1};
     opened o = open_fixture(4, &frame);
-    const enf_file_view *file = enf_world_file(o.world);
     const enf_complex *c = &o.fixture.build.complex;
     for (int32_t i = 0; i < c->facet_count; i++) {
         double centre[3] = {0, 0, 0};
@@ -163,9 +164,9 @@ static void rounded_face_centres_are_never_outside(void **state) {
         }
         enf_place place = enf_world_locate(o.world, centre, -1);
         assert_true(place.fine_cell >= 0);
-        const int32_t *faces = c->piece_face[i];
-        int32_t found = file->fine_tetrahedron[place.fine_cell];
-        assert_true((faces[0] >= 0 && found == faces[0] / 4) || (faces[1] >= 0 && found == faces[1] / 4));
+        const int32_t *cell = c->facet_cell[i]; // as many as tetrahedra, and one more
+        assert_int_equal(place.tetrahedron, fixture_tetrahedron_of(&o.fixture, place.fine_cell));
+        assert_true(place.tetrahedron == cell[0] || place.tetrahedron == cell[1]);
     }
     close_fixture(&o);
 }
@@ -193,7 +194,7 @@ static void a_point_on_a_wall_is_in_the_room(void **state) {
     assert_int_equal(place.cell, 0);
     assert_int_equal(place.kind, ENF_WORLD_AIR);
     at[0] = nextafter(2, 3);
-    place = enf_world_locate(o.world, at, place.fine_cell);
+    place = enf_world_locate(o.world, at, place.tetrahedron);
     assert_int_equal(place.cell, -1);
     assert_int_equal(place.kind, ENF_WORLD_ROCK);
     assert_string_equal(enf_world_kind_name(place.kind), "rock");

@@ -106,7 +106,7 @@ static void a_broken_build_is_not_written(void **state) {
     (void)state;
     fixture f;
     fixture_make(&f, 2, NULL);
-    f.build.complex.face_facet[3] = 1 << 20;
+    f.build.complex.piece_facet[3] = 1 << 20;
     enf_error error = {0};
     assert_int_equal(enf_build_write(&f.build, NULL, "never.enf", &error), ENF_CHECK_FAILED);
     assert_int_not_equal(access("never.enf", F_OK), 0);

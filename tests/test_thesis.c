@@ -55,9 +55,13 @@ static void assert_between(double low, double value, double high) {
     if (!(value >= low && value <= high)) fail_msg("%g is not in %g .. %g", value, low, high);
 }
 
+/// Extra cells by splitting, before cells were joined.
 static double split_share(const enf_build *build) {
     const enf_complex *complex = &build->complex;
-    return (complex->cell_count - complex->tetrahedron_count) / (double)complex->tetrahedron_count;
+    int32_t leaves = complex->cell_count + complex->cells_joined;
+    print_message("%d tetrahedra, %d leaves, %d fine cells\n", complex->tetrahedron_count, leaves,
+                  complex->cell_count);
+    return (leaves - complex->tetrahedron_count) / (double)complex->tetrahedron_count;
 }
 
 static int32_t active_cells(const enf_build *build) {

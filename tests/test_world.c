@@ -123,7 +123,7 @@ static void check_points(const enf_build *build, const enf_world *world) {
     const enf_complex *c = &build->complex;
     int32_t stride = 1 + c->vertex_count / 400;
     for (int32_t i = 0; i < c->vertex_count; i += stride)
-        check_point(build, world, c->vertex_position[i], i % c->cell_count);
+        check_point(build, world, c->vertex_position[i], i % c->tetrahedron_count);
     double largest = 0;
     for (int32_t i = 0; i < c->point_count; i++) {
         for (int a = 0; a < 3; a++) largest = fmax(largest, fabs(c->points[3 * i + a]));
@@ -131,15 +131,17 @@ static void check_points(const enf_build *build, const enf_world *world) {
     for (int n = 0; n < 600; n++) {
         double grid[3];
         for (int a = 0; a < 3; a++) grid[a] = ((double)(next_random(&seed) >> 11) * 0x1p-52 - 1) * largest;
-        check_point(build, world, grid, n % 2 ? -1 : (int32_t)(next_random(&seed) % (uint64_t)c->cell_count));
+        check_point(build, world, grid,
+                    n % 2 ? -1 : (int32_t)(next_random(&seed) % (uint64_t)c->tetrahedron_count));
     }
-    stride = 1 + c->faces.count / 400;
-    for (int32_t i = 0; i < c->faces.count; i += stride) { // the middle of a diagonal: on or next to the face
-        int64_t first = c->faces.offset[i], count = c->faces.offset[i + 1] - first;
+    stride = 1 + c->facet_count / 400;
+    for (int32_t i = 0; i < c->facet_count;
+         i += stride) { // the middle of a diagonal: on or next to the facet
+        int64_t first = c->facets.offset[i], count = c->facets.offset[i + 1] - first;
         double grid[3];
         for (int a = 0; a < 3; a++)
-            grid[a] = (c->vertex_position[c->faces.corners[first].vertex][a] +
-                       c->vertex_position[c->faces.corners[first + count / 2].vertex][a]) /
+            grid[a] = (c->vertex_position[c->facets.corners[first].vertex][a] +
+                       c->vertex_position[c->facets.corners[first + count / 2].vertex][a]) /
                       2;
         check_point(build, world, grid, -1);
     }

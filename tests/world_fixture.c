@@ -102,8 +102,8 @@ static void add_loop(enf_loops *loops, const int32_t corner[3], int32_t plane) {
     for (int k = 0; k < 3; k++) add_corner(loops, corner[k], plane);
 }
 
-/// Facets with their planes; face 4 t + k is the one of tetrahedron t opposite to its corner k.
-static void make_faces(fixture *f) {
+/// Facets with their planes, each one piece.
+static void make_facets(fixture *f) {
     enf_complex *c = &f->build.complex;
     int32_t count = 4 * c->tetrahedron_count;
     key *keys = take(f, (size_t)count, sizeof *keys);
@@ -124,31 +124,27 @@ static void make_faces(fixture *f) {
 
     c->planes = take(f, (size_t)count + 1, sizeof *c->planes);
     c->facet_plane = take(f, (size_t)count, sizeof *c->facet_plane);
-    c->facet_hull = take(f, (size_t)count, sizeof *c->facet_hull);
-    c->face_facet = take(f, (size_t)count, sizeof *c->face_facet);
-    c->face_side = take(f, (size_t)count, sizeof *c->face_side);
-    c->piece_face = take(f, (size_t)count, sizeof *c->piece_face);
-    new_loops(f, &c->faces, count);
+    c->facet_cell = take(f, (size_t)count, sizeof *c->facet_cell);
+    c->piece_facet = take(f, (size_t)count, sizeof *c->piece_facet);
+    new_loops(f, &c->facets, count);
     new_loops(f, &c->pieces, count);
     for (int32_t i = 0; i < count; i++) {
         bool is_new = i == 0 || memcmp(keys[i].corner, keys[i - 1].corner, sizeof keys[i].corner) != 0;
         if (is_new) {
             memcpy(c->planes[c->plane_count++], keys[i].corner, sizeof keys[i].corner);
             c->facet_plane[c->facet_count] = c->facet_count;
-            c->piece_face[c->facet_count][0] = c->piece_face[c->facet_count][1] = -1;
-            c->facet_hull[c->facet_count++] = true;
-            add_loop(&c->pieces, keys[i].corner, 0);
+            c->facet_cell[c->facet_count][0] = c->facet_cell[c->facet_count][1] = -1;
+            c->piece_facet[c->facet_count] = c->facet_count;
+            c->facet_count++;
+            c->pieces.count++; // without corners: the whole facet
+            add_loop(&c->facets, keys[i].corner, 0);
         }
-        int32_t facet = c->facet_count - 1, face = keys[i].face;
+        int32_t face = keys[i].face;
         const double *p = c->points;
         double side = side_of(p + 3 * keys[i].corner[0], p + 3 * keys[i].corner[1], p + 3 * keys[i].corner[2],
                               p + 3 * c->tetrahedra[face / 4][face % 4]);
-        if (!is_new) c->facet_hull[facet] = false;
-        c->face_facet[face] = facet;
-        c->face_side[face] = side > 0;
-        c->piece_face[facet][side > 0] = face;
+        c->facet_cell[c->facet_count - 1][side > 0] = face / 4;
     }
-    for (int32_t i = 0; i < count; i++) add_loop(&c->faces, c->planes[c->facet_plane[c->face_facet[i]]], 0);
 }
 
 static bool facet_lies_at(const fixture *f, int32_t facet, int axis) {
@@ -182,7 +178,11 @@ static void make_wall(fixture *f) {
             c->piece_cover[facet] = c->covers.count;
             c->cover_polygon[c->covers.count] = polygon;
             c->cover_side[c->covers.count] = 1;
-            add_loop(&c->covers, corner, 0);
+            if (polygon % 2) {
+                c->covers.offset[++c->covers.count] = (int64_t)c->covers.corner_count; // the whole facet
+            } else {
+                add_loop(&c->covers, corner, 0);
+            }
             mesh->polygon_source[polygon] = polygon;
             for (int k = 0; k < 3; k++)
                 mesh->corners[3 * polygon + k] = mesh->polygon_plane[polygon][k] = corner[k];
@@ -198,8 +198,8 @@ static void make_fine_cells(fixture *f) {
     enf_complex *c = &f->build.complex;
     int32_t count = c->tetrahedron_count + 1;
     c->cell_count = count;
-    c->cell_tetrahedron = take(f, (size_t)count, sizeof *c->cell_tetrahedron);
-    c->cell_face = take(f, (size_t)count + 1, sizeof *c->cell_face);
+    c->cell_facet = take(f, (size_t)count + 1, sizeof *c->cell_facet);
+    c->cell_facets = take(f, 4 * (size_t)count, sizeof *c->cell_facets);
     c->tetrahedron_root = take(f, (size_t)count, sizeof *c->tetrahedron_root);
     c->seen_offset = take(f, (size_t)count + 1, sizeof *c->seen_offset);
     c->seen = take(f, (size_t)count, sizeof *c->seen);
@@ -207,26 +207,29 @@ static void make_fine_cells(fixture *f) {
     c->node_count = 1;
     c->node_plane = take(f, 1, sizeof *c->node_plane);
     c->node_child = take(f, 1, sizeof *c->node_child);
-    c->node_facet = take(f, 1, sizeof *c->node_facet);
     int32_t plane = c->plane_count++;
     c->planes[plane][0] = c->tetrahedra[0][0];
     c->planes[plane][1] = c->tetrahedra[0][1];
     c->planes[plane][2] = point_at(f, 2, 2, 1);
     c->node_plane[0] = plane;
-    c->node_facet[0] = -1;
     c->node_child[0][0] = -1 - 0;
     c->node_child[0][1] = -1 - (count - 1);
     for (int32_t i = 0; i < count; i++) {
-        c->cell_tetrahedron[i] = i == count - 1 ? f->cut : i;
         if (i < count - 1) c->tetrahedron_root[i] = i == f->cut ? 0 : -1 - i;
-        c->cell_face[i + 1] = i == count - 1 ? c->cell_face[i] : 4 * (i + 1);
+        c->cell_facet[i + 1] = c->cell_facet[i];
         c->seen_offset[i + 1] = c->seen_offset[i];
-        for (int k = 0; k < 4 && i < count - 1; k++) {
-            int32_t cover = c->piece_cover[c->face_facet[4 * i + k]];
-            if (cover >= 0 && c->cover_side[cover] == c->face_side[4 * i + k])
+        for (int32_t facet = 0; facet < c->facet_count; facet++) {
+            int32_t cover = c->piece_cover[facet], side = c->facet_cell[facet][0] == i ? 0 : 1;
+            if (c->facet_cell[facet][side] != i) continue;
+            c->cell_facets[c->cell_facet[i + 1]++] = facet;
+            if (cover >= 0 && c->cover_side[cover] == side)
                 c->seen[c->seen_offset[i + 1]++] = c->cover_polygon[cover];
         }
     }
+}
+
+int32_t fixture_tetrahedron_of(const fixture *f, int32_t fine) {
+    return fine == f->build.complex.tetrahedron_count ? f->cut : fine;
 }
 
 static void make_regions(fixture *f) {
@@ -252,7 +255,7 @@ static void make_regions(fixture *f) {
         double middle[3] = {0, 0, 0};
         for (int k = 0; k < 4; k++) {
             for (int a = 0; a < 3; a++)
-                middle[a] += c->points[3 * c->tetrahedra[c->cell_tetrahedron[i]][k] + a] / 4;
+                middle[a] += c->points[3 * c->tetrahedra[fixture_tetrahedron_of(f, i)][k] + a] / 4;
         }
         regions->cell_region[i] = middle[0] > half;
         f->build.cell_of[i] = middle[0] > half ? -1 : middle[1] > half;
@@ -286,9 +289,9 @@ static void make_portal(fixture *f) {
     portals->polygon_area = take(f, most, sizeof *portals->polygon_area);
     new_loops(f, &portals->polygons, c->facet_count);
     for (int32_t facet = 0; facet < c->facet_count; facet++) {
-        const int32_t *face = c->piece_face[facet];
-        if (!facet_lies_at(f, facet, 1) || face[0] < 0 || face[1] < 0) continue;
-        int32_t behind = f->build.cell_of[face[0] / 4], front = f->build.cell_of[face[1] / 4];
+        const int32_t *cell = c->facet_cell[facet];
+        if (!facet_lies_at(f, facet, 1) || cell[0] < 0 || cell[1] < 0) continue;
+        int32_t behind = f->build.cell_of[cell[0]], front = f->build.cell_of[cell[1]];
         if (behind < 0 || front < 0) continue;
         portals->polygon_side[portals->polygons.count] = front > behind;
         portals->polygon_plane[portals->polygons.count] = facet;
@@ -343,7 +346,7 @@ void fixture_make(fixture *f, int side, const enf_frame *frame) {
     f->build.mesh.frame = frame ? *frame : (enf_frame){0.25, {0, 1, 2}, {1, 1, 1}, 1};
     make_points(f);
     make_tetrahedra(f);
-    make_faces(f);
+    make_facets(f);
     make_wall(f);
     make_fine_cells(f);
     make_regions(f);

@@ -22,6 +22,9 @@ typedef struct fixture {
 void fixture_make(fixture *fixture, int side, const enf_frame *frame);
 void fixture_free(fixture *fixture);
 
+/// The tetrahedron that a fine cell is, or is a part of.
+int32_t fixture_tetrahedron_of(const fixture *fixture, int32_t fine);
+
 /// The saved file in memory from malloc.
 unsigned char *fixture_save(const fixture *fixture, size_t *size);
 

@@ -25,7 +25,6 @@ typedef struct kitchen {
     enf_error *error;
     enf_tet_mesh tets; ///< until the arrangement takes them
     enf_arrangement arrangement;
-    enf_crossing *crossings;
     int32_t *node_of; ///< fine cell to node of the graph
     const char *stage;
     double begun, share; ///< the part of the stage that is at work: where it begins and how much it is of all
@@ -90,16 +89,16 @@ static enf_status split(kitchen *k) {
     memset(&k->tets, 0, sizeof k->tets); // taken, or freed
     if (status != ENF_OK) return status;
     k->begun = k->share = 0.5;
-    status = enf_complex_split(complex, &k->arrangement, &k->crew, &k->crossings, k->error);
+    status = enf_complex_split(complex, &k->arrangement, &k->crew, k->error);
     if (status != ENF_OK) return status;
-    say(k, "%d of %d tetrahedra cut; the others already carry their polygons", (int)complex->tetrahedra_cut,
-        (int)complex->tetrahedron_count);
+    say(k, "%d of %d tetrahedra cut; the others already carry their polygons; %d pieces joined to others",
+        (int)complex->tetrahedra_cut, (int)complex->tetrahedron_count, (int)complex->cells_joined);
     return ENF_OK;
 }
 
 static enf_status connect(kitchen *k) {
     enf_complex *complex = &k->build->complex;
-    enf_status status = enf_complex_connect(complex, &k->arrangement, k->crossings, &k->crew, k->error);
+    enf_status status = enf_complex_connect(complex, &k->arrangement, &k->crew, k->error);
     if (status != ENF_OK) return status;
     uint64_t all = complex->predicates_filter + complex->predicates_exact;
     say(k, "%d facets in %d pieces; %.3f %% of %.3g predicates needed exact arithmetic",
@@ -119,8 +118,6 @@ static enf_status colour(kitchen *k) {
         enf_regions_colour(&build->regions, &build->complex, &build->mesh, &k->arrangement.tets,
                            k->options->keep, crack_width(build), k->error);
     enf_arrangement_free(&k->arrangement);
-    free(k->crossings);
-    k->crossings = NULL;
     if (status != ENF_OK) return status;
     int32_t kept = 0;
     for (int32_t r = 0; r < build->regions.region_count; r++) kept += build->regions.kept[r];
@@ -215,7 +212,6 @@ enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf
     if (status == ENF_OK) skip_stage(&k, "visibility", "no PVS asked for");
     enf_tet_mesh_free(&k.tets);
     enf_arrangement_free(&k.arrangement);
-    free(k.crossings);
     free(k.node_of);
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);

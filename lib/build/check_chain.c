@@ -77,21 +77,23 @@ static bool line_vanishes(enf_check_edge *ends, size_t count) {
     return true;
 }
 
-bool enf_check_chain_take_line(enf_check_chain *chain, enf_check_exact *exact, int axis, int32_t line[2],
-                               bool *cancels) {
-    if (chain->count == 0) return false;
-    if (!enf_array_reserve(chain->edges, chain->capacity, 3 * chain->count)) {
-        chain->failed = true;
-        return false;
+/// Does the vertex lie on the line through two others? In a plane one projection tells, in space three do.
+static bool on_line(enf_check_exact *exact, int axis, const enf_check_edge *line, int32_t vertex) {
+    if (axis != ENF_CHECK_ANYWHERE) return enf_check_turn(exact, axis, line->low, line->high, vertex) == 0;
+    for (int k = 0; k < 3; k++) {
+        if (enf_check_turn(exact, k, line->low, line->high, vertex) != 0) return false;
     }
-    enf_check_edge *ends = chain->edges + chain->count;
+    return true;
+}
+
+/// Takes the edges on the line of the last one out of the chain, which has room for twice as many more. Do
+/// they cancel along it?
+static bool take_line(enf_check_chain *chain, enf_check_exact *exact, int axis) {
+    enf_check_edge *ends = chain->edges + chain->count, line = chain->edges[chain->count - 1];
     size_t end_count = 0, kept = 0;
-    line[0] = chain->edges[chain->count - 1].low;
-    line[1] = chain->edges[chain->count - 1].high;
     for (size_t i = 0; i < chain->count; i++) {
         enf_check_edge edge = chain->edges[i];
-        if (enf_check_turn(exact, axis, line[0], line[1], edge.low) == 0 &&
-            enf_check_turn(exact, axis, line[0], line[1], edge.high) == 0) {
+        if (on_line(exact, axis, &line, edge.low) && on_line(exact, axis, &line, edge.high)) {
             ends[end_count++] = (enf_check_edge){edge.low, 0, edge.turns};
             ends[end_count++] = (enf_check_edge){edge.high, 0, -edge.turns};
         } else {
@@ -99,18 +101,21 @@ bool enf_check_chain_take_line(enf_check_chain *chain, enf_check_exact *exact, i
         }
     }
     chain->count = kept;
-    *cancels = line_vanishes(ends, end_count);
-    return true;
+    return line_vanishes(ends, end_count);
 }
 
-bool enf_check_chain_vanishes(enf_check_chain *chain, enf_check_exact *exact, int axis) {
+bool enf_check_chain_vanishes(enf_check_chain *chain, enf_check_exact *exact, int axis,
+                              enf_check_edge *left) {
     enf_check_chain_reduce(chain);
-    int32_t line[2];
-    bool good = true;
-    while (good && enf_check_chain_take_line(chain, exact, axis, line, &good)) {
+    if (chain->count && !enf_array_reserve(chain->edges, chain->capacity, 3 * chain->count))
+        chain->failed = true;
+    bool good = !chain->failed;
+    while (good && chain->count > 0) {
+        if (left) *left = chain->edges[chain->count - 1];
+        good = take_line(chain, exact, axis);
     }
     chain->count = 0;
-    return good && !chain->failed;
+    return good;
 }
 
 // ---------------------------------------------------------------------------------------------- loops

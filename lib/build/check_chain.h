@@ -21,6 +21,8 @@ typedef struct enf_check_edge {
     int32_t turns;     ///< how often it runs from low to high, less how often back
 } enf_check_edge;
 
+enum { ENF_CHECK_ANYWHERE = -1 };
+
 typedef struct enf_check_chain {
     enf_check_edge *edges;
     size_t count, capacity;
@@ -41,14 +43,10 @@ void enf_check_chain_add_loop(enf_check_chain *chain, const enf_check_exact *exa
 /// Merges equal edges and drops those that cancel.
 void enf_check_chain_reduce(enf_check_chain *chain);
 
-/// Takes the edges on one line out of a reduced chain; line[0], line[1] are two places on it, *cancels tells
-/// whether the edges cancel along it. False if the chain is empty, or without memory.
-bool enf_check_chain_take_line(enf_check_chain *chain, enf_check_exact *exact, int axis, int32_t line[2],
-                               bool *cancels);
-
-/// Does the chain cancel along every line? Its vertices lie in a plane that is not parallel to `axis`.
-/// Empties the chain.
-bool enf_check_chain_vanishes(enf_check_chain *chain, enf_check_exact *exact, int axis);
+/// Does the chain cancel along every line? Its vertices lie in a plane that is not parallel to `axis`, or
+/// anywhere if `axis` is ENF_CHECK_ANYWHERE. Empties the chain; *left (may be null) receives an edge of a
+/// line along which it does not cancel.
+bool enf_check_chain_vanishes(enf_check_chain *chain, enf_check_exact *exact, int axis, enf_check_edge *left);
 
 /// What is wrong with a loop, or null: it has three corners or more, all on its plane, it is strictly convex
 /// and turns counter-clockwise seen from its plane's front, and the edge planes hold their edges and are not

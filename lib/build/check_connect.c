@@ -1,41 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connect: the pieces of a facet tile its faces on both sides; open ones are free of polygons, the others lie
-// under one.
+// Connect: the pieces of a facet tile it; open ones are free of polygons, the others lie under one.
 #include "build/check_rows.h"
 
-#include "base/array.h"
-
-#include <stdlib.h>
-
-static bool piece_faces_fit(enf_checker *checker, int32_t piece, int32_t facet) {
-    const enf_file_view *view = checker->view;
-    const int32_t *face = view->piece_face[piece];
-    for (int side = 0; side < 2; side++) {
-        if (face[side] < 0) continue;
-        if (view->face_facet[face[side]] != facet || view->face_side[face[side]] != side)
-            return enf_check_break(checker,
-                                   "piece %d of facet %d names face %d, which is not on that side of it",
-                                   (int)piece, (int)facet, (int)face[side]);
-    }
-    bool one_sided = face[0] < 0 || face[1] < 0;
-    if ((face[0] < 0 && face[1] < 0) || one_sided != (view->facet_hull[facet] != 0))
-        return enf_check_break(checker, "piece %d of facet %d lacks a face, or has one outside the hull",
-                               (int)piece, (int)facet);
-    return true;
-}
-
 static bool check_piece(enf_checker *checker, int32_t piece, int32_t facet) {
+    const enf_file_view *view = checker->view;
+    if (view->piece_facet[piece] != facet)
+        return enf_check_break(checker, "piece %d is listed by facet %d, but names facet %d", (int)piece,
+                               (int)facet, (int)view->piece_facet[piece]);
+    if (view->piece_offset[piece] == view->piece_offset[piece + 1]) return true; // the facet
     enf_check_loop loop = enf_check_piece(checker, piece, facet);
     const char *fault = enf_check_loop_fault(&checker->exact, &loop);
-    if (fault) return enf_check_break(checker, "piece %d of facet %d %s", (int)piece, (int)facet, fault);
-    return piece_faces_fit(checker, piece, facet);
+    return !fault || enf_check_break(checker, "piece %d of facet %d %s", (int)piece, (int)facet, fault);
 }
 
 static void check_pieces(enf_checker *checker) {
     const enf_file_view *view = checker->view;
-    enf_check_begin(checker, "connect: pieces",
-                    "every piece is convex, on its facet, between a face behind and a face in front of it, "
-                    "or on the hull");
+    enf_check_begin(checker, "connect: pieces", "every piece is convex and on the facet that it names");
     for (int32_t f = 0; f < view->facet_count; f++) {
         for (int32_t p = view->facet_piece[f]; p < view->facet_piece[f + 1]; p++, checker->row->tested++) {
             if (!check_piece(checker, p, f)) return;
@@ -43,53 +23,31 @@ static void check_pieces(enf_checker *checker) {
     }
 }
 
-/// The pieces that name a face tile it.
-static bool face_is_tiled(enf_checker *checker, int32_t face, const int32_t *pieces, int32_t count) {
+static bool facet_is_tiled(enf_checker *checker, int32_t facet) {
     enf_check_exact *exact = &checker->exact;
-    int32_t facet = checker->view->face_facet[face];
-    enf_check_loop whole = enf_check_face(checker, face);
-    if (count == 1) {
-        enf_check_loop piece = enf_check_piece(checker, pieces[0], facet);
+    int32_t first = checker->view->facet_piece[facet], end = checker->view->facet_piece[facet + 1];
+    enf_check_loop whole = enf_check_facet(checker, facet);
+    if (end - first == 1) {
+        enf_check_loop piece = enf_check_piece(checker, first, facet);
         if (enf_check_same_loop(exact, &whole, &piece)) return true;
     }
     enf_check_chain_empty(&checker->chain);
     enf_check_chain_add_loop(&checker->chain, exact, &whole, -1);
-    for (int32_t i = 0; i < count; i++) {
-        enf_check_loop piece = enf_check_piece(checker, pieces[i], facet);
+    for (int32_t p = first; p < end; p++) {
+        enf_check_loop piece = enf_check_piece(checker, p, facet);
         enf_check_chain_add_loop(&checker->chain, exact, &piece, 1);
     }
     if (checker->chain.failed) return enf_check_no_memory(checker);
     int sign, axis = enf_check_axis(exact, whole.plane, &sign);
-    return enf_check_chain_vanishes(&checker->chain, exact, axis) ||
-           enf_check_break(checker, "open and occluded pieces do not add up to face %d on facet %d",
-                           (int)face, (int)facet);
+    return enf_check_chain_vanishes(&checker->chain, exact, axis, NULL) ||
+           enf_check_break(checker, "open and occluded pieces do not add up to facet %d", (int)facet);
 }
 
-static void check_faces(enf_checker *checker) {
-    const enf_file_view *view = checker->view;
+static void check_areas(enf_checker *checker) {
     enf_check_begin(checker, "connect: areas",
-                    "the open and occluded pieces of every face tile it, without gap or overlap");
-    int32_t *first = enf_array_zeroed((size_t)view->face_count + 2, sizeof *first);
-    int32_t *list = enf_array_new(2 * (size_t)view->piece_count, sizeof *list);
-    bool good = (first && list) || enf_check_no_memory(checker);
-    for (int pass = 0; good && pass < 2; pass++) {
-        for (int32_t p = 0; p < view->piece_count; p++) {
-            for (int side = 0; side < 2; side++) {
-                int32_t face = view->piece_face[p][side];
-                if (face < 0) continue;
-                if (pass == 0) {
-                    first[face + 2]++;
-                } else {
-                    list[first[face + 1]++] = p;
-                }
-            }
-        }
-        for (int32_t f = 0; pass == 0 && f < view->face_count; f++) first[f + 2] += first[f + 1];
-    }
-    for (int32_t f = 0; good && f < view->face_count; f++, checker->row->tested++)
-        good = face_is_tiled(checker, f, list + first[f], first[f + 1] - first[f]);
-    free(first);
-    free(list);
+                    "the open and occluded pieces of every facet tile it, without gap or overlap");
+    for (int32_t f = 0; f < checker->view->facet_count && facet_is_tiled(checker, f); f++)
+        checker->row->tested++;
 }
 
 static bool check_occlusion_of(enf_checker *checker, int32_t piece, int32_t facet) {
@@ -132,6 +90,6 @@ static void check_occlusion(enf_checker *checker) {
 void enf_check_connect(enf_checker *checker) {
     check_pieces(checker);
     if (!enf_check_holds(checker)) return;
-    check_faces(checker);
+    check_areas(checker);
     check_occlusion(checker);
 }

@@ -1,59 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Split, the other half: the area of every clean polygon lies on faces of cells, as covers.
+// Split, the other half: the area of every clean polygon lies on facets between fine cells, as
+// covers.
 #include "build/check_rows.h"
 
 #include "base/array.h"
 
 #include <stdlib.h>
 
-/// Is the cover on the same side of a line of the outline as the facet's faces are? They are all on one side.
-static bool inside_line(enf_checker *checker, const enf_check_loop *cover, int32_t facet, int axis,
-                        const int32_t line[2]) {
-    enf_check_exact *exact = &checker->exact;
-    int inner = 0;
-    for (int32_t i = checker->facet_first[facet]; i < checker->facet_first[facet + 1]; i++) {
-        enf_check_loop face = enf_check_face(checker, checker->facet_faces[i]);
-        for (int32_t k = 0; k < face.count; k++) {
-            int side = enf_check_turn(exact, axis, line[0], line[1], face.corners[k].vertex);
-            if (side != 0 && side == -inner) return false;
-            if (side != 0) inner = side;
-        }
-    }
-    for (int32_t k = 0; k < cover->count; k++) {
-        if (enf_check_turn(exact, axis, line[0], line[1], cover->corners[k].vertex) == -inner) return false;
-    }
-    return inner != 0;
-}
-
-/// Is the cover inside the area that the facet's faces make up? What is left of the faces' edges is the
-/// outline of that area, which is convex, and edges inside it that cancel along their line.
+/// A facet is convex: it holds a cover that has all its corners in it.
 static bool cover_on_facet(enf_checker *checker, const enf_check_loop *cover, int32_t facet) {
-    enf_check_exact *exact = &checker->exact;
-    int32_t first = checker->facet_first[facet], end = checker->facet_first[facet + 1], line[2];
-    int side = first < end ? checker->view->face_side[checker->facet_faces[first]] : 0;
-    enf_check_chain_empty(&checker->chain);
-    for (int32_t i = first; i < end; i++) {
-        enf_check_loop face = enf_check_face(checker, checker->facet_faces[i]);
-        if (checker->view->face_side[checker->facet_faces[i]] == side)
-            enf_check_chain_add_loop(&checker->chain, exact, &face, 1);
+    enf_check_loop whole = enf_check_facet(checker, facet);
+    for (int32_t i = 0; i < cover->count; i++) {
+        if (!enf_check_loop_holds(&checker->exact, &whole, cover->corners[i].vertex)) return false;
     }
-    if (checker->chain.failed) return enf_check_no_memory(checker);
-    enf_check_chain_reduce(&checker->chain);
-    int sign, axis = enf_check_axis(exact, cover->plane, &sign);
-    bool cancels, outlined = false;
-    while (enf_check_chain_take_line(&checker->chain, exact, axis, line, &cancels)) {
-        if (cancels) continue;
-        outlined = true;
-        if (!inside_line(checker, cover, facet, axis, line)) return false;
-    }
-    return outlined && (!checker->chain.failed || enf_check_no_memory(checker));
+    return true;
 }
 
 static bool check_cover(enf_checker *checker, int32_t cover, int32_t facet) {
     const enf_file_view *view = checker->view;
     enf_check_exact *exact = &checker->exact;
     enf_check_loop loop = enf_check_cover(checker, cover, facet);
-    const char *fault = enf_check_loop_fault(exact, &loop);
+    bool whole = view->cover_offset[cover] == view->cover_offset[cover + 1];
+    const char *fault = whole ? NULL : enf_check_loop_fault(exact, &loop);
     if (fault) return enf_check_break(checker, "cover %d of facet %d %s", (int)cover, (int)facet, fault);
     int32_t polygon = view->cover_polygon[cover];
     const int32_t *span = view->mesh_polygon_plane[polygon];
@@ -67,7 +35,7 @@ static bool check_cover(enf_checker *checker, int32_t cover, int32_t facet) {
     if (view->cover_side[cover] != same_way)
         return enf_check_break(checker, "cover %d names the wrong side as the front of polygon %d",
                                (int)cover, (int)polygon);
-    if (!cover_on_facet(checker, &loop, facet))
+    if (!whole && !cover_on_facet(checker, &loop, facet))
         return enf_check_break(checker, "cover %d reaches out of its facet %d", (int)cover, (int)facet);
     return true;
 }
@@ -90,7 +58,7 @@ static bool polygon_is_covered(enf_checker *checker, int32_t polygon, const int3
     if (checker->chain.failed) return enf_check_no_memory(checker);
     int axis = 0;
     while (axis < 2 && enf_check_normal_sign(exact, view->mesh_polygon_plane[polygon], axis) == 0) axis++;
-    return enf_check_chain_vanishes(&checker->chain, exact, axis) ||
+    return enf_check_chain_vanishes(&checker->chain, exact, axis, NULL) ||
            enf_check_break(checker, "the covers of clean polygon %d do not tile it", (int)polygon);
 }
 
@@ -120,7 +88,7 @@ void enf_check_covers(enf_checker *checker) {
     }
     if (enf_check_holds(checker)) {
         enf_check_begin(checker, "split: polygons",
-                        "the area of every clean polygon lies on faces of fine cells, exactly");
+                        "the area of every clean polygon lies on facets of fine cells, exactly");
         check_polygons(checker, first, list, facet_of);
     }
     free(facet_of);

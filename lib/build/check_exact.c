@@ -67,13 +67,7 @@ static bool same_tuple(const enf_check_exact *exact, const enf_check_tuple *a, c
                0;
 }
 
-/// Tuples by value; numbers are given out by the owner.
-typedef struct table {
-    int32_t *slots;
-    size_t mask;
-} table;
-
-static bool table_make(table *table, size_t count) {
+static bool table_make(enf_check_table *table, size_t count) {
     size_t slots = 16;
     while (slots < 2 * count) slots *= 2;
     table->slots = enf_array_new(slots, sizeof *table->slots);
@@ -83,8 +77,8 @@ static bool table_make(table *table, size_t count) {
 }
 
 /// The slot that holds a tuple equal to `tuple`, or the empty one where it belongs.
-static int32_t *table_find(const enf_check_exact *exact, const table *table, const enf_check_tuple *tuples,
-                           const enf_check_tuple *tuple) {
+static int32_t *table_find(const enf_check_exact *exact, const enf_check_table *table,
+                           const enf_check_tuple *tuples, const enf_check_tuple *tuple) {
     size_t slot = tuple_hash(exact, tuple) & table->mask;
     while (table->slots[slot] >= 0 && !same_tuple(exact, &tuples[table->slots[slot]], tuple))
         slot = (slot + 1) & table->mask;
@@ -160,24 +154,30 @@ static bool add_class(enf_check_exact *exact, const enf_check_tuple *tuple, mpz_
     return true;
 }
 
-static enf_check_fault make_plane(enf_check_exact *exact, table *table, int32_t plane) {
-    const int32_t *points = exact->view->planes[plane];
-    mpz_t *number = exact->term;
+/// number[0..3] = a, b, c, d of the plane through three points, the first of a, b, c that is not zero made
+/// positive. Returns 1, or -1 if it was turned over for that, or 0 if the points span no plane.
+static int8_t make_plane_numbers(const enf_check_exact *exact, const int32_t points[3], mpz_t *number) {
     wide normal[3];
     normal_of(exact, points, normal);
     int first = normal[0] ? 0 : normal[1] ? 1 : 2;
-    if (normal[first] == 0) return ENF_CHECK_FAULT_PLANE;
-    exact->plane_sign[plane] = normal[first] > 0 ? 1 : -1;
+    if (normal[first] == 0) return 0;
     mpz_set_ui(number[3], 0);
     for (int i = 0; i < 3; i++) {
         set_wide(number[i], normal[first] > 0 ? normal[i] : -normal[i]);
         set_wide(number[4], coordinate(exact, points[0], i));
         mpz_submul(number[3], number[i], number[4]);
     }
+    return normal[first] > 0 ? 1 : -1;
+}
+
+static enf_check_fault make_plane(enf_check_exact *exact, int32_t plane) {
+    mpz_t *number = exact->term;
+    exact->plane_sign[plane] = make_plane_numbers(exact, exact->view->planes[plane], number);
+    if (exact->plane_sign[plane] == 0) return ENF_CHECK_FAULT_PLANE;
     size_t limbs = exact->limb_count;
     enf_check_tuple tuple;
     if (!store(exact, number, &tuple)) return ENF_CHECK_FAULT_MEMORY;
-    int32_t *slot = table_find(exact, table, exact->classes, &tuple);
+    int32_t *slot = table_find(exact, &exact->class_table, exact->classes, &tuple);
     if (*slot >= 0) {
         exact->limb_count = limbs;
     } else {
@@ -186,6 +186,17 @@ static enf_check_fault make_plane(enf_check_exact *exact, table *table, int32_t 
     }
     exact->plane_class[plane] = *slot;
     return ENF_CHECK_FAULT_NONE;
+}
+
+int32_t enf_check_class_through(enf_check_exact *exact, const int32_t points[3], int8_t *sign) {
+    enf_check_tuple tuple;
+    size_t limbs = exact->limb_count;
+    *sign = make_plane_numbers(exact, points, exact->term);
+    if (*sign == 0) return -1;
+    if (!store(exact, exact->term, &tuple)) *sign = 0;
+    if (*sign == 0) return -1;
+    exact->limb_count = limbs;
+    return *table_find(exact, &exact->class_table, exact->classes, &tuple);
 }
 
 // ---------------------------------------------------------------------------------------------- vertices
@@ -222,7 +233,18 @@ static double quotient(mpz_srcptr x, mpz_srcptr w) {
     return a == 0 ? 0 : ldexp(a / b, (int)(above - below));
 }
 
-static enf_check_fault make_vertex(enf_check_exact *exact, table *table, int32_t vertex) {
+/// Stores number[0..3] = x, y, z, w as a vertex. False without memory.
+static bool set_vertex(enf_check_exact *exact, int32_t vertex, mpz_t number[4]) {
+    if (!store(exact, number, &exact->vertices[vertex])) return false;
+    exact->vertex_whole[vertex] = mpz_cmp_ui(number[3], 1) == 0;
+    for (int i = 0; i < 3; i++) {
+        exact->near[vertex][i] = quotient(number[i], number[3]);
+        if (mpz_sizeinbase(number[i], 2) > 53) exact->vertex_whole[vertex] = false;
+    }
+    return true;
+}
+
+static enf_check_fault make_vertex(enf_check_exact *exact, enf_check_table *table, int32_t vertex) {
     const enf_file_view *view = exact->view;
     mpz_t *number = exact->term;
     const int32_t *planes = view->vertex_planes[vertex];
@@ -238,16 +260,18 @@ static enf_check_fault make_vertex(enf_check_exact *exact, table *table, int32_t
         cross_planes(exact, exact->vertex_class[vertex], number);
     }
     if (mpz_sgn(number[3]) == 0) return ENF_CHECK_FAULT_VERTEX;
-    if (!store(exact, number, &exact->vertices[vertex])) return ENF_CHECK_FAULT_MEMORY;
-    exact->vertex_whole[vertex] = mpz_cmp_ui(number[3], 1) == 0;
-    for (int i = 0; i < 3; i++) {
-        exact->near[vertex][i] = quotient(number[i], number[3]);
-        if (mpz_sizeinbase(number[i], 2) > 53) exact->vertex_whole[vertex] = false;
-    }
+    if (!set_vertex(exact, vertex, number)) return ENF_CHECK_FAULT_MEMORY;
     int32_t *slot = table_find(exact, table, exact->vertices, &exact->vertices[vertex]);
     if (*slot < 0) *slot = vertex;
     exact->place[vertex] = *slot;
     return ENF_CHECK_FAULT_NONE;
+}
+
+static bool reserve_vertices(enf_check_exact *exact, size_t count) {
+    return enf_array_reserve(exact->vertices, exact->vertex_capacity, count) &&
+           enf_array_reserve(exact->near, exact->near_capacity, count) &&
+           enf_array_reserve(exact->vertex_whole, exact->vertex_whole_capacity, count) &&
+           enf_array_reserve(exact->vertex_class, exact->vertex_class_capacity, count);
 }
 
 static bool allocate(enf_check_exact *exact) {
@@ -255,12 +279,8 @@ static bool allocate(enf_check_exact *exact) {
     exact->plane_class = enf_array_new(planes, sizeof *exact->plane_class);
     exact->plane_sign = enf_array_new(planes, sizeof *exact->plane_sign);
     exact->place = enf_array_new(vertices, sizeof *exact->place);
-    exact->vertices = enf_array_new(vertices, sizeof *exact->vertices);
-    exact->near = enf_array_new(vertices, sizeof *exact->near);
-    exact->vertex_whole = enf_array_new(vertices, sizeof *exact->vertex_whole);
-    exact->vertex_class = enf_array_new(vertices, sizeof *exact->vertex_class);
-    return exact->plane_class && exact->plane_sign && exact->place && exact->vertices && exact->near &&
-           exact->vertex_whole && exact->vertex_class;
+    exact->vertex_count = exact->view->vertex_count;
+    return exact->plane_class && exact->plane_sign && exact->place && reserve_vertices(exact, vertices + 1);
 }
 
 enf_check_fault enf_check_exact_make(enf_check_exact *exact, const enf_file_view *view, int32_t *which) {
@@ -269,15 +289,13 @@ enf_check_fault enf_check_exact_make(enf_check_exact *exact, const enf_file_view
     for (int i = 0; i < TERMS; i++) mpz_init(exact->term[i]);
     if (!allocate(exact)) return ENF_CHECK_FAULT_MEMORY;
     enf_check_fault fault = check_points(exact, which);
-    table table = {0};
-    if (fault == ENF_CHECK_FAULT_NONE && !table_make(&table, (size_t)view->plane_count))
+    enf_check_table table = {0};
+    if (fault == ENF_CHECK_FAULT_NONE && !table_make(&exact->class_table, (size_t)view->plane_count))
         fault = ENF_CHECK_FAULT_MEMORY;
     for (int32_t p = 0; fault == ENF_CHECK_FAULT_NONE && p < view->plane_count; p++) {
         *which = p;
-        fault = make_plane(exact, &table, p);
+        fault = make_plane(exact, p);
     }
-    free(table.slots);
-    table.slots = NULL;
     if (fault == ENF_CHECK_FAULT_NONE && !table_make(&table, (size_t)view->vertex_count))
         fault = ENF_CHECK_FAULT_MEMORY;
     for (int32_t v = 0; fault == ENF_CHECK_FAULT_NONE && v < view->vertex_count; v++) {
@@ -285,7 +303,37 @@ enf_check_fault enf_check_exact_make(enf_check_exact *exact, const enf_file_view
         fault = make_vertex(exact, &table, v);
     }
     free(table.slots);
+    exact->world_limbs = exact->limb_count;
     return fault;
+}
+
+int32_t enf_check_cross_edge(enf_check_exact *exact, int32_t from, int32_t to, int32_t plane_class) {
+    if (exact->vertex_count == INT32_MAX || !reserve_vertices(exact, (size_t)exact->vertex_count + 1))
+        return -1;
+    mpz_t view, *number = exact->term; // number[5], [6]: how far the ends are from the plane, times their w
+    for (int end = 0; end < 2; end++) {
+        mpz_t other;
+        mpz_set_ui(number[5 + end], 0);
+        for (int i = 0; i < 4; i++) {
+            mpz_addmul(number[5 + end], read_number(exact, &exact->classes[plane_class], i, view),
+                       read_number(exact, &exact->vertices[end ? to : from], i, other));
+        }
+        mpz_abs(number[5 + end], number[5 + end]);
+    }
+    for (int i = 0; i < 4; i++) {
+        mpz_mul(number[i], read_number(exact, &exact->vertices[from], i, view), number[6]);
+        mpz_addmul(number[i], read_number(exact, &exact->vertices[to], i, view), number[5]);
+    }
+    int32_t vertex = exact->vertex_count;
+    if (!set_vertex(exact, vertex, number)) return -1;
+    exact->vertex_class[vertex][0] = plane_class;
+    exact->vertex_class[vertex][1] = exact->vertex_class[vertex][2] = -1;
+    return exact->vertex_count++;
+}
+
+void enf_check_drop_crossings(enf_check_exact *exact) {
+    exact->vertex_count = exact->view->vertex_count;
+    exact->limb_count = exact->world_limbs;
 }
 
 void enf_check_exact_free(enf_check_exact *exact) {
@@ -302,6 +350,7 @@ void enf_check_exact_free(enf_check_exact *exact) {
     free(exact->vertex_whole);
     free(exact->vertex_class);
     free(exact->limbs);
+    free(exact->class_table.slots);
     memset(exact, 0, sizeof *exact);
 }
 

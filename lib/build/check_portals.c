@@ -226,10 +226,9 @@ static size_t list_areas(const enf_checker *checker, area *areas) {
     size_t count = 0;
     for (int32_t f = 0; f < view->facet_count; f++) {
         for (int32_t p = view->facet_piece[f]; p < view->facet_piece[f + 1]; p++) {
-            const int32_t *face = view->piece_face[p];
-            if (!enf_check_is_open(view, p) || face[0] < 0 || face[1] < 0) continue;
-            int32_t behind = view->fine_cell[checker->face_cell[face[0]]],
-                    front = view->fine_cell[checker->face_cell[face[1]]];
+            const int32_t *fine = view->facet_fine[f];
+            if (!enf_check_is_open(view, p) || fine[0] < 0 || fine[1] < 0) continue;
+            int32_t behind = view->fine_cell[fine[0]], front = view->fine_cell[fine[1]];
             if (behind == front || behind < 0 || front < 0) continue;
             areas[count++] = (area){behind < front ? behind : front, behind < front ? front : behind,
                                     class_and_side(checker, view->facet_plane[f], front > behind), p, f};
@@ -308,7 +307,7 @@ static void check_openings(enf_checker *checker) {
         if (fabs(normal[2]) > fabs(normal[axis])) axis = 2;
         add_group(checker, areas + i, end - i);
         bool same =
-            !checker->chain.failed && enf_check_chain_vanishes(&checker->chain, &checker->exact, axis);
+            !checker->chain.failed && enf_check_chain_vanishes(&checker->chain, &checker->exact, axis, NULL);
         if (!same && !checker->chain.failed && view->provenance->slivers > 0) {
             add_group(checker, areas + i, end - i);
             enf_check_chain_reduce(&checker->chain);

@@ -15,13 +15,6 @@ typedef struct enf_checker {
     enf_check_chain chain;
     bool failed; ///< no memory
 
-    int32_t *face_cell;   ///< per face
-    int32_t *facet_first; ///< facet_count + 1 offsets into facet_faces: the faces on each facet
-    int32_t *facet_faces;
-    int32_t *facet_node; ///< per facet: the node that made it, or -1
-    int32_t *cell_first; ///< tetrahedron_count + 1 offsets into tetrahedron_cells
-    int32_t *tetrahedron_cells;
-    int32_t (*tetrahedron_facet)[4]; ///< facet opposite each corner, -1 unknown; filled by enf_check_split
 } enf_checker;
 
 /// Starts a row. `truth` is the detail of a row that holds.
@@ -38,17 +31,23 @@ static inline bool enf_check_holds(const enf_checker *checker) {
     return checker->row->held && !checker->failed;
 }
 
-static inline enf_check_loop enf_check_face(const enf_checker *checker, int32_t face) {
+static inline enf_check_loop enf_check_facet(const enf_checker *checker, int32_t facet) {
     const enf_file_view *view = checker->view;
-    int64_t first = view->face_offset[face];
-    return (enf_check_loop){view->face_corners + first, (int32_t)(view->face_offset[face + 1] - first),
-                            view->facet_plane[view->face_facet[face]]};
+    int64_t first = view->facet_offset[facet];
+    return (enf_check_loop){view->facet_corners + first, (int32_t)(view->facet_offset[facet + 1] - first),
+                            view->facet_plane[facet]};
 }
 
-/// A cover or piece, on a facet.
+/// The side of a facet on which a fine cell that lists it lies: 0 behind, 1 in front.
+static inline int enf_check_facet_side(const enf_checker *checker, int32_t facet, int32_t fine) {
+    return checker->view->facet_fine[facet][0] == fine ? 0 : 1;
+}
+
+/// A cover or piece, on a facet: the facet itself if it has no corners of its own.
 static inline enf_check_loop enf_check_cover(const enf_checker *checker, int32_t cover, int32_t facet) {
     const enf_file_view *view = checker->view;
     int64_t first = view->cover_offset[cover];
+    if (view->cover_offset[cover + 1] == first) return enf_check_facet(checker, facet);
     return (enf_check_loop){view->cover_corners + first, (int32_t)(view->cover_offset[cover + 1] - first),
                             view->facet_plane[facet]};
 }
@@ -56,6 +55,7 @@ static inline enf_check_loop enf_check_cover(const enf_checker *checker, int32_t
 static inline enf_check_loop enf_check_piece(const enf_checker *checker, int32_t piece, int32_t facet) {
     const enf_file_view *view = checker->view;
     int64_t first = view->piece_offset[piece];
+    if (view->piece_offset[piece + 1] == first) return enf_check_facet(checker, facet);
     return (enf_check_loop){view->piece_corners + first, (int32_t)(view->piece_offset[piece + 1] - first),
                             view->facet_plane[facet]};
 }
@@ -78,6 +78,7 @@ void enf_check_numbers(enf_checker *checker); ///< check_file.c; sets up checker
 void enf_check_clean(enf_checker *checker);
 void enf_check_tetrahedra(enf_checker *checker);
 void enf_check_split(enf_checker *checker);
+void enf_check_trees(enf_checker *checker); ///< a row of split
 void enf_check_covers(enf_checker *checker);
 void enf_check_connect(enf_checker *checker);
 void enf_check_seen(enf_checker *checker); ///< a row of connect

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is seen: the polygons whose front each fine cell has on its faces, and the triangles each cell lists
+// What is seen: the polygons whose front each fine cell has on its facets, and the triangles each cell lists
 // for drawing.
 #include "build/check_rows.h"
 
@@ -9,17 +9,13 @@
 
 // ---------------------------------------------------------------------------------------------- fine cells
 
-/// Marks the polygons whose front covers some area of the face, from the face's side.
-static void mark_seen(enf_checker *checker, int32_t face, int32_t *mark, int32_t stamp, int32_t *count) {
+/// Marks the polygons whose front covers some area of the facet, on the side of the cell.
+static void mark_seen(enf_checker *checker, int32_t facet, int32_t cell, int32_t *mark, int32_t *count) {
     const enf_file_view *view = checker->view;
-    int32_t facet = view->face_facet[face];
-    enf_check_loop loop = enf_check_face(checker, face);
     for (int32_t c = view->facet_cover[facet]; c < view->facet_cover[facet + 1]; c++) {
         int32_t *at = &mark[view->cover_polygon[c]];
-        if (view->cover_side[c] != view->face_side[face] || *at == stamp) continue;
-        enf_check_loop cover = enf_check_cover(checker, c, facet);
-        if (enf_check_loops_apart(&checker->exact, &loop, &cover)) continue;
-        *at = stamp;
+        if (view->cover_side[c] != enf_check_facet_side(checker, facet, cell) || *at == cell + 1) continue;
+        *at = cell + 1;
         ++*count;
     }
 }
@@ -27,8 +23,8 @@ static void mark_seen(enf_checker *checker, int32_t face, int32_t *mark, int32_t
 static bool check_cell(enf_checker *checker, int32_t cell, int32_t *mark) {
     const enf_file_view *view = checker->view;
     int32_t count = 0;
-    for (int32_t f = view->fine_face[cell]; f < view->fine_face[cell + 1]; f++)
-        mark_seen(checker, f, mark, cell + 1, &count);
+    for (int32_t i = view->fine_facet[cell]; i < view->fine_facet[cell + 1]; i++)
+        mark_seen(checker, view->fine_facets[i], cell, mark, &count);
     int64_t first = view->seen_offset[cell], end = view->seen_offset[cell + 1];
     for (int64_t i = first; i < end; i++) {
         if (mark[view->seen[i]] != cell + 1 || (i > first && view->seen[i] <= view->seen[i - 1]))
@@ -43,7 +39,7 @@ static bool check_cell(enf_checker *checker, int32_t cell, int32_t *mark) {
 void enf_check_seen(enf_checker *checker) {
     const enf_file_view *view = checker->view;
     enf_check_begin(checker, "connect: seen",
-                    "every fine cell lists the polygons whose front lies on its faces, no others");
+                    "every fine cell lists the polygons whose front lies on its facets, no others");
     int32_t *mark = enf_array_zeroed((size_t)view->mesh_polygon_count, sizeof *mark);
     if (!mark) enf_check_no_memory(checker);
     for (int32_t c = 0; mark && c < view->fine_count && check_cell(checker, c, mark); c++)

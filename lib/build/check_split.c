@@ -1,11 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Split: convex fine cells that tile their tetrahedra, and polygons that lie on their faces.
+// Split: convex fine cells that tile the hull, with facets between them.
+//
+// Why the rows prove the tiling. The outlines of a cell's facets, turned outwards, cancel along every line in
+// space, so the facets are a closed surface; all corners are on the inner side of every facet's plane, so the
+// surface lies on the boundary of the corners' convex hull, turned outwards everywhere, and covers it equally
+// often, m > 0 times: the surface is m times the boundary of a convex body. Add up all cells: a facet between
+// two cells is there once each way round and cancels; what remains are the facets on the hull of the world,
+// which make up the outer faces of the tetrahedra. Closed surfaces that are equal hold every point equally
+// often, and tetrahedra hold each point of the hull once ("tetrahedralize: hull"). So m is 1 and every point
+// is in exactly one cell, up to the facets; volumes add up.
 #include "build/check_rows.h"
 
 #include "base/array.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+// ---------------------------------------------------------------------------------------------- facets
+
+static bool check_facet(enf_checker *checker, int32_t facet) {
+    const int32_t *fine = checker->view->facet_fine[facet];
+    enf_check_loop loop = enf_check_facet(checker, facet);
+    const char *fault = enf_check_loop_fault(&checker->exact, &loop);
+    if (fault) return enf_check_break(checker, "facet %d %s", (int)facet, fault);
+    return fine[0] != fine[1] || enf_check_break(checker, "facet %d has the same on both sides, fine cell %d",
+                                                 (int)facet, (int)fine[0]);
+}
+
+/// What a cell lists are facets that name it; as many are listed as are named, so all are.
+static void check_facets(enf_checker *checker) {
+    const enf_file_view *view = checker->view;
+    enf_check_begin(
+        checker, "split: facets",
+        "every facet is convex, on its plane, and between two fine cells that list it, or on the hull");
+    int64_t sides = 0;
+    for (int32_t f = 0; f < view->facet_count; f++, checker->row->tested++) {
+        if (!check_facet(checker, f)) return;
+        sides += (view->facet_fine[f][0] >= 0) + (view->facet_fine[f][1] >= 0);
+    }
+    for (int32_t c = 0; c < view->fine_count; c++) {
+        for (int32_t i = view->fine_facet[c]; i < view->fine_facet[c + 1]; i++) {
+            const int32_t *at = &view->fine_facets[i], *fine = view->facet_fine[*at];
+            if ((fine[0] == c || fine[1] == c) && (i == view->fine_facet[c] || at[-1] < at[0])) continue;
+            enf_check_break(checker, "fine cell %d lists facet %d, which is not its own or out of order",
+                            (int)c, (int)*at);
+            return;
+        }
+    }
+    if (sides != view->fine_facet_count)
+        enf_check_break(checker, "facets have %lld sides, but fine cells list %d", (long long)sides,
+                        (int)view->fine_facet_count);
+}
 
 // ---------------------------------------------------------------------------------------------- cells
 
@@ -23,12 +68,13 @@ static int compare_numbers(const void *a, const void *b) {
 static bool gather_corners(enf_checker *checker, corner_list *list, int32_t cell) {
     const enf_file_view *view = checker->view;
     list->count = 0;
-    int64_t first = view->face_offset[view->fine_face[cell]],
-            end = view->face_offset[view->fine_face[cell + 1]];
-    if (!enf_array_reserve(list->places, list->capacity, (size_t)(end - first)))
-        return enf_check_no_memory(checker);
-    for (int64_t c = first; c < end; c++)
-        list->places[list->count++] = checker->exact.place[view->face_corners[c].vertex];
+    for (int32_t i = view->fine_facet[cell]; i < view->fine_facet[cell + 1]; i++) {
+        enf_check_loop loop = enf_check_facet(checker, view->fine_facets[i]);
+        if (!enf_array_reserve(list->places, list->capacity, list->count + (size_t)loop.count))
+            return enf_check_no_memory(checker);
+        for (int32_t k = 0; k < loop.count; k++)
+            list->places[list->count++] = checker->exact.place[loop.corners[k].vertex];
+    }
     qsort(list->places, list->count, sizeof *list->places, compare_numbers);
     size_t kept = 0;
     for (size_t i = 0; i < list->count; i++) {
@@ -38,46 +84,55 @@ static bool gather_corners(enf_checker *checker, corner_list *list, int32_t cell
     return true;
 }
 
-/// All corners on the cell's side of the face's plane, and one of them off it.
-static bool face_bounds_cell(enf_checker *checker, const corner_list *list, int32_t cell, int32_t face) {
-    const enf_file_view *view = checker->view;
-    int inner = view->face_side[face] ? 1 : -1;
+/// All corners on the cell's side of the facet's plane, and one of them off it.
+static bool facet_bounds_cell(enf_checker *checker, const corner_list *list, int32_t cell, int32_t facet) {
+    int inner = enf_check_facet_side(checker, facet, cell) ? 1 : -1;
     bool volume = false;
-    int32_t plane = view->facet_plane[view->face_facet[face]];
     for (size_t i = 0; i < list->count; i++) {
-        int side = enf_check_side(&checker->exact, list->places[i], plane);
+        int side = enf_check_side(&checker->exact, list->places[i], checker->view->facet_plane[facet]);
         if (side == -inner)
-            return enf_check_break(checker, "fine cell %d is not convex: vertex %d lies outside its face %d",
-                                   (int)cell, (int)list->places[i], (int)face);
+            return enf_check_break(checker, "fine cell %d is not convex: vertex %d lies outside its facet %d",
+                                   (int)cell, (int)list->places[i], (int)facet);
         volume = volume || side == inner;
     }
     return volume || enf_check_break(checker, "fine cell %d has no volume", (int)cell);
 }
 
+/// Has an earlier facet of the cell the same plane, and the cell on the same side of it?
+static bool is_repeated(const enf_checker *checker, int32_t cell, int32_t index) {
+    const enf_file_view *view = checker->view;
+    const enf_check_exact *exact = &checker->exact;
+    int32_t facet = view->fine_facets[index], plane = view->facet_plane[facet];
+    for (int32_t i = view->fine_facet[cell]; i < index; i++) {
+        int32_t other = view->fine_facets[i], its = view->facet_plane[other];
+        if (exact->plane_class[plane] != exact->plane_class[its]) continue;
+        bool same_way = exact->plane_sign[plane] == exact->plane_sign[its];
+        bool same_side =
+            enf_check_facet_side(checker, facet, cell) == enf_check_facet_side(checker, other, cell);
+        if (same_way == same_side) return true;
+    }
+    return false;
+}
+
 static bool check_cell(enf_checker *checker, corner_list *list, int32_t cell) {
     const enf_file_view *view = checker->view;
-    int32_t first = view->fine_face[cell], end = view->fine_face[cell + 1];
-    if (end - first < 4) return enf_check_break(checker, "fine cell %d has fewer than four faces", (int)cell);
+    int32_t first = view->fine_facet[cell], end = view->fine_facet[cell + 1];
+    if (end - first < 4)
+        return enf_check_break(checker, "fine cell %d has fewer than four facets", (int)cell);
     if (!gather_corners(checker, list, cell)) return false;
     enf_check_chain_empty(&checker->chain);
-    for (int32_t f = first; f < end; f++) {
-        enf_check_loop loop = enf_check_face(checker, f);
-        const char *fault = enf_check_loop_fault(&checker->exact, &loop);
-        if (fault) return enf_check_break(checker, "face %d of fine cell %d %s", (int)f, (int)cell, fault);
-        if (!face_bounds_cell(checker, list, cell, f)) return false;
-        for (int32_t g = first; g < f; g++) {
-            int32_t other = view->facet_plane[view->face_facet[g]];
-            if (checker->exact.plane_class[loop.plane] == checker->exact.plane_class[other])
-                return enf_check_break(checker, "faces %d and %d of fine cell %d lie in one plane", (int)g,
-                                       (int)f, (int)cell);
-        }
-        enf_check_chain_add_loop(&checker->chain, &checker->exact, &loop, view->face_side[f] ? -1 : 1);
+    for (int32_t i = first; i < end; i++) {
+        int32_t facet = view->fine_facets[i];
+        enf_check_loop loop = enf_check_facet(checker, facet);
+        if (!is_repeated(checker, cell, i) && !facet_bounds_cell(checker, list, cell, facet)) return false;
+        enf_check_chain_add_loop(&checker->chain, &checker->exact, &loop,
+                                 enf_check_facet_side(checker, facet, cell) ? -1 : 1);
     }
+    enf_check_edge left = {0};
+    bool closed = enf_check_chain_vanishes(&checker->chain, &checker->exact, ENF_CHECK_ANYWHERE, &left);
     if (checker->chain.failed) return enf_check_no_memory(checker);
-    enf_check_chain_reduce(&checker->chain);
-    if (checker->chain.count == 0) return true;
-    return enf_check_break(checker, "fine cell %d is not closed: the edge of vertices %d and %d has one face",
-                           (int)cell, (int)checker->chain.edges[0].low, (int)checker->chain.edges[0].high);
+    return closed || enf_check_break(checker, "fine cell %d is not closed at the edge of vertices %d and %d",
+                                     (int)cell, (int)left.low, (int)left.high);
 }
 
 static void check_cells(enf_checker *checker) {
@@ -88,215 +143,93 @@ static void check_cells(enf_checker *checker) {
     free(list.places);
 }
 
-// ---------------------------------------------------------------------------------------------- tiling
+// ---------------------------------------------------------------------------------------------- the hull
 
-/// Which of its tetrahedron's faces a fine cell's face lies on, or -1.
-static int tetrahedron_side(enf_checker *checker, int32_t t, int32_t face) {
-    const enf_file_view *view = checker->view;
-    int32_t plane = view->facet_plane[view->face_facet[face]];
-    int off = -1;
-    for (int k = 0; k < 4; k++) {
-        if (enf_check_side(&checker->exact, view->tetrahedra[t][k], plane) == 0) continue;
-        if (off >= 0) return -1;
-        off = k;
-    }
-    return off;
+/// A facet on the hull, or an outer face of a tetrahedron.
+typedef struct outer {
+    int32_t plane_class;
+    int32_t facet;      ///< -1: a face
+    int32_t corners[3]; ///< of a face, counter-clockwise seen from outside
+} outer;
+
+static int compare_outers(const void *a, const void *b) {
+    const outer *x = a, *y = b;
+    return (x->plane_class > y->plane_class) - (x->plane_class < y->plane_class);
 }
 
-/// A tetrahedron's face as a loop, turning as its cells' faces do: counter-clockwise seen from outside.
-static void add_tetrahedron_face(enf_checker *checker, int32_t t, int k, int32_t times) {
+static size_t list_outers(enf_checker *checker, outer *list) {
     static const int outside[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-    const int32_t *corner = checker->view->tetrahedra[t];
-    for (int i = 0; i < 3; i++) {
-        enf_check_chain_add(&checker->chain, &checker->exact, corner[outside[k][i]],
-                            corner[outside[k][(i + 1) % 3]], times);
-    }
-}
-
-static bool find_facets(enf_checker *checker, int32_t t) {
     const enf_file_view *view = checker->view;
-    for (int32_t i = checker->cell_first[t]; i < checker->cell_first[t + 1]; i++) {
-        int32_t cell = checker->tetrahedron_cells[i];
-        for (int32_t f = view->fine_face[cell]; f < view->fine_face[cell + 1]; f++) {
-            int32_t facet = view->face_facet[f];
-            if (checker->facet_node[facet] >= 0) continue;
-            int k = tetrahedron_side(checker, t, f);
-            if (k < 0)
-                return enf_check_break(checker,
-                                       "face %d of fine cell %d lies neither on a cut nor on tetrahedron %d",
-                                       (int)f, (int)cell, (int)t);
-            int32_t *known = &checker->tetrahedron_facet[t][k];
-            if (*known < 0) *known = facet;
-            if (*known != facet)
-                return enf_check_break(checker, "face %d of tetrahedron %d has two facets, %d and %d", k,
-                                       (int)t, (int)*known, (int)facet);
-        }
+    size_t count = 0;
+    for (int32_t f = 0; f < view->facet_count; f++) {
+        if (view->facet_fine[f][0] >= 0 && view->facet_fine[f][1] >= 0) continue;
+        if (list) list[count] = (outer){checker->exact.plane_class[view->facet_plane[f]], f, {0}};
+        count++;
     }
-    return true;
-}
-
-/// The cells' faces on each face of the tetrahedron tile it.
-static bool tetrahedron_is_tiled(enf_checker *checker, int32_t t) {
-    const enf_file_view *view = checker->view;
-    if (!find_facets(checker, t)) return false;
-    for (int k = 0; k < 4; k++) {
-        int32_t facet = checker->tetrahedron_facet[t][k], next = view->tetrahedron_next[t][k];
-        if (facet < 0)
-            return enf_check_break(checker, "no fine cell touches face %d of tetrahedron %d", k, (int)t);
-        if (view->facet_hull[facet] != (next < 0))
-            return enf_check_break(checker, "facet %d is marked wrongly as to the hull", (int)facet);
-        enf_check_chain_empty(&checker->chain);
-        for (int32_t i = checker->facet_first[facet]; i < checker->facet_first[facet + 1]; i++) {
-            int32_t face = checker->facet_faces[i], owner = view->fine_tetrahedron[checker->face_cell[face]];
-            if (owner != t && (owner != next || next < 0))
-                return enf_check_break(checker, "facet %d of tetrahedron %d has a face of tetrahedron %d",
-                                       (int)facet, (int)t, (int)owner);
-            if (owner != t) continue;
-            enf_check_loop loop = enf_check_face(checker, face);
-            enf_check_chain_add_loop(&checker->chain, &checker->exact, &loop, view->face_side[face] ? -1 : 1);
-        }
-        add_tetrahedron_face(checker, t, k, -1);
-        int sign, axis = enf_check_axis(&checker->exact, view->facet_plane[facet], &sign);
-        if (checker->chain.failed) return enf_check_no_memory(checker);
-        if (!enf_check_chain_vanishes(&checker->chain, &checker->exact, axis))
-            return enf_check_break(checker, "the fine cells do not tile face %d of tetrahedron %d", k,
-                                   (int)t);
-    }
-    return true;
-}
-
-/// Both sides of a cut are tiled by the same area.
-static bool cut_is_matched(enf_checker *checker, int32_t node) {
-    const enf_file_view *view = checker->view;
-    int32_t facet = view->node_facet[node];
-    if (checker->exact.plane_class[view->facet_plane[facet]] !=
-        checker->exact.plane_class[view->node_plane[node]])
-        return enf_check_break(checker, "facet %d is not on the plane of the cut that made it", (int)facet);
-    int32_t count[2] = {0, 0}, tetrahedron = -1;
-    enf_check_chain_empty(&checker->chain);
-    for (int32_t i = checker->facet_first[facet]; i < checker->facet_first[facet + 1]; i++) {
-        int32_t face = checker->facet_faces[i], owner = view->fine_tetrahedron[checker->face_cell[face]];
-        if (tetrahedron >= 0 && owner != tetrahedron)
-            return enf_check_break(checker, "cut facet %d has faces in tetrahedra %d and %d", (int)facet,
-                                   (int)tetrahedron, (int)owner);
-        tetrahedron = owner;
-        count[view->face_side[face]]++;
-        enf_check_loop loop = enf_check_face(checker, face);
-        enf_check_chain_add_loop(&checker->chain, &checker->exact, &loop, view->face_side[face] ? -1 : 1);
-    }
-    if (checker->chain.failed) return enf_check_no_memory(checker);
-    int sign, axis = enf_check_axis(&checker->exact, view->facet_plane[facet], &sign);
-    bool same = enf_check_chain_vanishes(&checker->chain, &checker->exact, axis);
-    if (count[0] == 0 || count[1] == 0 || !same || view->facet_hull[facet])
-        return enf_check_break(checker, "the two sides of cut facet %d differ", (int)facet);
-    return true;
-}
-
-static void check_tiling(enf_checker *checker) {
-    const enf_file_view *view = checker->view;
-    enf_check_begin(
-        checker, "split: tiling",
-        "fine cells tile their tetrahedron's faces, and both sides of every cut: their volumes add up to it");
-    for (int32_t n = 0; n < view->node_count && enf_check_holds(checker); n++) {
-        int32_t facet = view->node_facet[n];
-        if (facet < 0 || checker->facet_node[facet] != n) {
-            enf_check_break(checker, "cut %d has no facet of its own", (int)n);
-        } else {
-            cut_is_matched(checker, n);
-        }
-        checker->row->tested++;
-    }
-    for (int32_t t = 0; t < view->tetrahedron_count && enf_check_holds(checker); t++, checker->row->tested++)
-        tetrahedron_is_tiled(checker, t);
-    for (int32_t t = 0; t < view->tetrahedron_count && enf_check_holds(checker); t++) {
+    for (int32_t t = 0; t < view->tetrahedron_count; t++) {
         for (int k = 0; k < 4; k++) {
-            int32_t next = view->tetrahedron_next[t][k], facet = checker->tetrahedron_facet[t][k];
-            bool shared = next < 0;
-            for (int j = 0; j < 4 && !shared; j++)
-                shared = checker->tetrahedron_facet[next][j] == facet && view->tetrahedron_next[next][j] == t;
-            if (!shared)
-                enf_check_break(checker, "tetrahedra %d and %d do not share facet %d", (int)t, (int)next,
-                                (int)facet);
+            if (view->tetrahedron_next[t][k] >= 0) continue;
+            outer made = {.facet = -1};
+            int8_t sign = 1;
+            for (int i = 0; i < 3; i++) made.corners[i] = view->tetrahedra[t][outside[k][i]];
+            if (list) made.plane_class = enf_check_class_through(&checker->exact, made.corners, &sign);
+            if (sign == 0) enf_check_no_memory(checker);
+            if (list) list[count] = made;
+            count++;
         }
     }
+    return count;
 }
 
-// ---------------------------------------------------------------------------------------------- the trees of
-// cuts
-
-/// Walks up from a leaf: the cell lies on the right side of every cut above it.
-static bool leaf_is_right(enf_checker *checker, const int32_t *parent, int32_t cell, int32_t from) {
-    const enf_file_view *view = checker->view;
-    int64_t first = view->face_offset[view->fine_face[cell]],
-            end = view->face_offset[view->fine_face[cell + 1]];
-    int32_t child = -1 - cell;
-    for (int32_t node = from; node >= 0; child = node, node = parent[node]) {
-        int wrong = view->node_child[node][0] == child ? 1 : -1;
-        for (int64_t c = first; c < end; c++) {
-            if (enf_check_side(&checker->exact, view->face_corners[c].vertex, view->node_plane[node]) ==
-                wrong)
-                return enf_check_break(checker, "fine cell %d lies on the wrong side of cut %d", (int)cell,
-                                       (int)node);
+/// The outlines of the facets and those of the faces in one plane are the same.
+static bool plane_is_matched(enf_checker *checker, const outer *list, size_t count) {
+    enf_check_exact *exact = &checker->exact;
+    enf_check_chain_empty(&checker->chain);
+    for (size_t i = 0; i < count; i++) {
+        if (list[i].facet >= 0) {
+            enf_check_loop loop = enf_check_facet(checker, list[i].facet);
+            bool turned = checker->view->facet_fine[list[i].facet][0] < 0;
+            enf_check_chain_add_loop(&checker->chain, exact, &loop, turned ? -1 : 1);
         }
+        for (int k = 0; k < 3 && list[i].facet < 0; k++)
+            enf_check_chain_add(&checker->chain, exact, list[i].corners[k], list[i].corners[(k + 1) % 3], -1);
     }
-    return true;
+    bool same = enf_check_chain_vanishes(&checker->chain, exact, ENF_CHECK_ANYWHERE, NULL) &&
+                list[0].plane_class >= 0; // faces that no plane of the world holds have no facets
+    if (checker->chain.failed) return enf_check_no_memory(checker);
+    if (list[0].facet >= 0)
+        return same ||
+               enf_check_break(checker, "facets on the hull in the plane of facet %d do not tile its faces",
+                               (int)list[0].facet);
+    return same || enf_check_break(checker, "no facets on the hull tile its face of points %d, %d and %d",
+                                   (int)list[0].corners[0], (int)list[0].corners[1], (int)list[0].corners[2]);
 }
 
-typedef struct tree_walk {
-    int32_t *parent; ///< per node; -1: a root
-    int32_t *stack;
-    uint8_t *met; ///< per fine cell
-} tree_walk;
-
-static bool walk_tree(enf_checker *checker, tree_walk *walk, int32_t t) {
-    const enf_file_view *view = checker->view;
-    size_t depth = 0;
-    int32_t root = view->tetrahedron_root[t];
-    if (root >= 0) walk->parent[root] = -1;
-    walk->stack[depth++] = root;
-    while (depth > 0) {
-        int32_t here = walk->stack[--depth];
-        if (here >= 0) {
-            for (int k = 0; k < 2; k++) {
-                int32_t child = view->node_child[here][k];
-                if (child >= 0) {
-                    walk->parent[child] = here;
-                    walk->stack[depth++] = child;
-                    continue;
-                }
-                if (!leaf_is_right(checker, walk->parent, -1 - child, here)) return false;
-                if (walk->met[-1 - child]++ || view->fine_tetrahedron[-1 - child] != t)
-                    return enf_check_break(checker, "fine cell %d hangs in two trees, or in the wrong one",
-                                           (int)(-1 - child));
-            }
-        } else if (walk->met[-1 - here]++ || view->fine_tetrahedron[-1 - here] != t) {
-            return enf_check_break(checker, "fine cell %d hangs in two trees, or in the wrong one",
-                                   (int)(-1 - here));
+static void check_hull(enf_checker *checker) {
+    enf_check_begin(checker, "split: hull",
+                    "facets on the hull tile the tetrahedra's outer faces; so the fine cells tile the hull, "
+                    "and their volumes add up");
+    size_t count = list_outers(checker, NULL);
+    outer *list = enf_array_new(count, sizeof *list);
+    if (!list) {
+        enf_check_no_memory(checker);
+        return;
+    }
+    list_outers(checker, list);
+    qsort(list, count, sizeof *list, compare_outers);
+    for (size_t i = 0, end; i < count && enf_check_holds(checker); i = end) {
+        for (end = i + 1; end < count && list[end].plane_class == list[i].plane_class; end++) {
         }
+        plane_is_matched(checker, list + i, end - i);
+        checker->row->tested += end - i;
     }
-    return true;
-}
-
-static void check_trees(enf_checker *checker) {
-    const enf_file_view *view = checker->view;
-    enf_check_begin(checker, "split: trees",
-                    "the tree of cuts of each tetrahedron leads to its fine cells, each on its side");
-    tree_walk walk = {.parent = enf_array_new((size_t)view->node_count, sizeof(int32_t)),
-                      .stack = enf_array_new((size_t)view->node_count + 1, sizeof(int32_t)),
-                      .met = enf_array_zeroed((size_t)view->fine_count, 1)};
-    bool good = (walk.parent && walk.stack && walk.met) || enf_check_no_memory(checker);
-    for (int32_t t = 0; good && t < view->tetrahedron_count; t++) good = walk_tree(checker, &walk, t);
-    for (int32_t c = 0; good && c < view->fine_count; c++, checker->row->tested++) {
-        if (!walk.met[c]) good = enf_check_break(checker, "fine cell %d hangs in no tree", (int)c);
-    }
-    free(walk.parent);
-    free(walk.stack);
-    free(walk.met);
+    free(list);
 }
 
 void enf_check_split(enf_checker *checker) {
+    check_facets(checker);
+    if (!enf_check_holds(checker)) return;
     check_cells(checker);
-    if (!checker->row->held) return;
-    check_tiling(checker);
-    check_trees(checker);
+    if (!enf_check_holds(checker)) return;
+    check_hull(checker);
 }

@@ -28,9 +28,9 @@ static int32_t *join_cells(enf_checker *checker, bool within_cells) {
     }
     for (int32_t c = 0; c < view->fine_count; c++) parent[c] = c;
     for (int32_t p = 0; p < view->piece_count; p++) {
-        const int32_t *face = view->piece_face[p];
-        if (!enf_check_is_open(view, p) || face[0] < 0 || face[1] < 0) continue;
-        int32_t a = checker->face_cell[face[0]], b = checker->face_cell[face[1]];
+        const int32_t *fine = view->facet_fine[view->piece_facet[p]];
+        if (!enf_check_is_open(view, p) || fine[0] < 0 || fine[1] < 0) continue;
+        int32_t a = fine[0], b = fine[1];
         if (within_cells && view->fine_cell[a] != view->fine_cell[b]) continue;
         a = find_root(parent, a);
         b = find_root(parent, b);
@@ -86,9 +86,9 @@ static double piece_width(const enf_checker *checker, const enf_check_loop *loop
 /// 2^-24 of the piece's size, are allowed.
 static bool check_seal(enf_checker *checker, int32_t piece, int32_t facet, double crack) {
     const enf_file_view *view = checker->view;
-    const int32_t *face = view->piece_face[piece];
-    int32_t behind = face[0] < 0 ? -1 : view->fine_region[checker->face_cell[face[0]]],
-            front = face[1] < 0 ? -1 : view->fine_region[checker->face_cell[face[1]]];
+    const int32_t *fine = view->facet_fine[facet];
+    int32_t behind = fine[0] < 0 ? -1 : view->fine_region[fine[0]],
+            front = fine[1] < 0 ? -1 : view->fine_region[fine[1]];
     if (behind == front)
         return enf_check_break(checker, "piece %d is sealed, though both its sides are region %d", (int)piece,
                                (int)front);
@@ -171,9 +171,9 @@ static void check_kinds(enf_checker *checker) {
     bool *kept = enf_array_zeroed((size_t)view->region_count, sizeof *kept);
     bool good = (open && kept) || enf_check_no_memory(checker);
     for (int32_t p = 0; good && p < view->piece_count; p++) {
-        const int32_t *face = view->piece_face[p];
-        if (!enf_check_is_open(view, p) || (face[0] >= 0 && face[1] >= 0)) continue;
-        open[view->fine_region[checker->face_cell[face[0] >= 0 ? face[0] : face[1]]]] = true;
+        const int32_t *fine = view->facet_fine[view->piece_facet[p]];
+        if (!enf_check_is_open(view, p) || (fine[0] >= 0 && fine[1] >= 0)) continue;
+        open[view->fine_region[fine[0] >= 0 ? fine[0] : fine[1]]] = true;
     }
     bool known = good && expect_kept(view, kept);
     for (int32_t r = 0; good && r < view->region_count; r++, checker->row->tested++)
@@ -226,11 +226,11 @@ static void check_volumes(enf_checker *checker) {
     double step = view->frame->step, hull = hull_volume(view) / 6 * step * step * step, sum = 0;
     for (int32_t r = 0; r < view->region_count; r++, checker->row->tested++) sum += view->regions[r].volume;
     double area = 0, length = 0;
-    for (int32_t f = 0; f < view->face_count; f++) {
-        enf_check_loop face = enf_check_face(checker, f);
-        area += loop_area(checker, &face, &length);
+    for (int32_t f = 0; f < view->facet_count; f++) {
+        enf_check_loop facet = enf_check_facet(checker, f);
+        area += loop_area(checker, &facet, &length);
     }
-    if (!(fabs(sum - hull) <= 1e-9 * hull + 2 * area * step * step * step))
+    if (!(fabs(sum - hull) <= 1e-9 * hull + 4 * area * step * step * step)) // each facet bounds two cells
         enf_check_break(checker, "the regions' volumes add up to %.17g, the hull has %.17g", sum, hull);
     int64_t discarded = 0;
     for (int32_t c = 0; c < view->fine_count; c++) discarded += !view->regions[view->fine_region[c]].kept;
@@ -255,12 +255,11 @@ static void check_areas(enf_checker *checker) {
     for (int32_t p = 0; p < view->piece_count; p++) {
         int32_t cover = view->piece_cover[p];
         if (cover < 0) continue;
-        enf_check_loop loop = enf_check_piece(checker, p, 0); // its plane does not matter here
+        enf_check_loop loop = enf_check_piece(checker, p, view->piece_facet[p]);
         double area = loop_area(checker, &loop, &length) * square;
         for (int side = 0; side < 2; side++) {
-            int32_t face = view->piece_face[p][side];
-            if (face >= 0)
-                sum[view->fine_region[checker->face_cell[face]]][view->cover_side[cover] != side] += area;
+            int32_t fine = view->facet_fine[view->piece_facet[p]][side];
+            if (fine >= 0) sum[view->fine_region[fine]][view->cover_side[cover] != side] += area;
         }
     }
     for (int32_t r = 0; r < view->region_count && enf_check_holds(checker); r++, checker->row->tested++) {
@@ -276,9 +275,10 @@ static void check_areas(enf_checker *checker) {
 
 static bool in_cell(enf_checker *checker, const double grid[3], int32_t cell) {
     const enf_file_view *view = checker->view;
-    for (int32_t f = view->fine_face[cell]; f < view->fine_face[cell + 1]; f++) {
-        int side = enf_check_side_of_place(&checker->exact, grid, view->facet_plane[view->face_facet[f]]);
-        if (side == (view->face_side[f] ? -1 : 1)) return false;
+    for (int32_t i = view->fine_facet[cell]; i < view->fine_facet[cell + 1]; i++) {
+        int32_t f = view->fine_facets[i];
+        int side = enf_check_side_of_place(&checker->exact, grid, view->facet_plane[f]);
+        if (side == (enf_check_facet_side(checker, f, cell) ? -1 : 1)) return false;
     }
     return true;
 }
@@ -286,8 +286,8 @@ static bool in_cell(enf_checker *checker, const double grid[3], int32_t cell) {
 static bool outside_hull(enf_checker *checker, const double grid[3]) {
     const enf_file_view *view = checker->view;
     for (int32_t f = 0; f < view->facet_count; f++) {
-        if (!view->facet_hull[f] || checker->facet_first[f] == checker->facet_first[f + 1]) continue;
-        int out = view->face_side[checker->facet_faces[checker->facet_first[f]]] ? -1 : 1;
+        if (view->facet_fine[f][0] >= 0 && view->facet_fine[f][1] >= 0) continue;
+        int out = view->facet_fine[f][0] < 0 ? -1 : 1;
         if (enf_check_side_of_place(&checker->exact, grid, view->facet_plane[f]) == out) return true;
     }
     return false;
@@ -391,26 +391,32 @@ static void check_connected(enf_checker *checker) {
     free(first);
 }
 
+static bool box_holds_facet(enf_checker *checker, int32_t fine, int32_t facet, double allowed) {
+    const enf_file_view *view = checker->view;
+    const enf_file_frame *frame = view->frame;
+    const enf_file_cell *cell = &view->cells[view->fine_cell[fine]];
+    for (int64_t c = view->facet_offset[facet]; c < view->facet_offset[facet + 1]; c++) {
+        const double *at = view->vertex_position[view->facet_corners[c].vertex];
+        for (int a = 0; a < 3; a++) {
+            int axis = frame->axis[a];
+            double x = frame->sign[a] * at[a] * frame->step;
+            if (x < cell->box_min[axis] - allowed || x > cell->box_max[axis] + allowed)
+                return enf_check_break(checker, "fine cell %d reaches out of the box of cell %d", (int)fine,
+                                       (int)view->fine_cell[fine]);
+        }
+    }
+    return true;
+}
+
 /// Boxes are rounded: 2^-48 of the world's size is allowed.
 static void check_boxes(enf_checker *checker) {
     const enf_file_view *view = checker->view;
-    const enf_file_frame *frame = view->frame;
     enf_check_begin(checker, "decimate: boxes", "every cell's box holds its fine cells");
-    double allowed = 0x1p53 * frame->step * 0x1p-48;
-    for (int32_t f = 0; f < view->face_count; f++, checker->row->tested++) {
-        int32_t cell = view->fine_cell[checker->face_cell[f]];
-        for (int64_t c = view->face_offset[f]; cell >= 0 && c < view->face_offset[f + 1]; c++) {
-            const double *at = view->vertex_position[view->face_corners[c].vertex];
-            for (int a = 0; a < 3; a++) {
-                int axis = frame->axis[a];
-                double x = frame->sign[a] * at[a] * frame->step;
-                if (x >= view->cells[cell].box_min[axis] - allowed &&
-                    x <= view->cells[cell].box_max[axis] + allowed)
-                    continue;
-                enf_check_break(checker, "fine cell %d reaches out of the box of cell %d",
-                                (int)checker->face_cell[f], (int)cell);
-                return;
-            }
+    double allowed = 0x1p53 * view->frame->step * 0x1p-48;
+    for (int32_t c = 0; c < view->fine_count; c++) {
+        for (int32_t i = view->fine_facet[c]; i < view->fine_facet[c + 1] && view->fine_cell[c] >= 0; i++) {
+            if (!box_holds_facet(checker, c, view->fine_facets[i], allowed)) return;
+            checker->row->tested++;
         }
     }
 }

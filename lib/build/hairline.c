@@ -29,16 +29,15 @@ static void offer(door *best, int32_t piece, double area) {
 }
 
 /// Every set of thin cells joins the set beyond its largest open piece. Returns how many sets were joined.
-static int32_t join_round(const enf_complex *complex, const int32_t *face_cell, const bool *cell_kept,
-                          int32_t *parent, bool *thick, door *doors) {
+static int32_t join_round(const enf_complex *complex, const bool *cell_kept, int32_t *parent, bool *thick,
+                          door *doors) {
     for (int32_t c = 0; c < complex->cell_count; c++) doors[c].piece = -1;
     for (int pass = 0, joined = 0; pass < 2; pass++) {
         for (int32_t p = 0; p < complex->pieces.count; p++) {
-            const int32_t *face = complex->piece_face[p];
-            if (complex->piece_cover[p] != ENF_PIECE_OPEN || face[0] < 0 || face[1] < 0) continue;
-            if (!cell_kept[face_cell[face[0]]] || !cell_kept[face_cell[face[1]]]) continue;
-            int32_t a = enf_sets_find(parent, face_cell[face[0]]),
-                    b = enf_sets_find(parent, face_cell[face[1]]);
+            const int32_t *cell = enf_complex_piece_cells(complex, p);
+            if (complex->piece_cover[p] != ENF_PIECE_OPEN || cell[0] < 0 || cell[1] < 0) continue;
+            if (!cell_kept[cell[0]] || !cell_kept[cell[1]]) continue;
+            int32_t a = enf_sets_find(parent, cell[0]), b = enf_sets_find(parent, cell[1]);
             if (a == b) continue;
             if (pass == 0 && !(thick[a] && thick[b])) {
                 double area[3];
@@ -63,10 +62,10 @@ static int32_t join_round(const enf_complex *complex, const int32_t *face_cell, 
 bool enf_complex_number_nodes(const enf_complex *complex, const bool *cell_kept, double thin,
                               int32_t *node_of, int32_t *node_count, int32_t *joined) {
     size_t cells = (size_t)complex->cell_count;
-    int32_t *face_cell = enf_complex_face_cells(complex), *parent = enf_array_new(cells, sizeof *parent);
+    int32_t *parent = enf_array_new(cells, sizeof *parent);
     bool *thick = enf_array_new(cells, sizeof *thick);
     door *doors = enf_array_new(cells, sizeof *doors);
-    bool good = face_cell && parent && thick && doors;
+    bool good = parent && thick && doors;
     *joined = 0;
     if (good) {
         int32_t thin_count = 0;
@@ -76,7 +75,7 @@ bool enf_complex_number_nodes(const enf_complex *complex, const bool *cell_kept,
             thin_count += !thick[c];
         }
         for (int32_t round = 1; thin_count > 0 && round > 0; *joined += round) {
-            round = join_round(complex, face_cell, cell_kept, parent, thick, doors);
+            round = join_round(complex, cell_kept, parent, thick, doors);
         }
         *node_count = 0;
         for (int32_t c = 0; c < complex->cell_count; c++) {
@@ -84,7 +83,6 @@ bool enf_complex_number_nodes(const enf_complex *complex, const bool *cell_kept,
             node_of[c] = !cell_kept[c] ? -1 : root == c ? (*node_count)++ : node_of[root];
         }
     }
-    free(face_cell);
     free(parent);
     free(thick);
     free(doors);

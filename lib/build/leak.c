@@ -18,15 +18,14 @@ static int compare_openings(const void *a, const void *b) {
     return (x->piece > y->piece) - (x->piece < y->piece);
 }
 
-static int32_t side_cell(const enf_complex *complex, const int32_t *face_cell, int32_t piece, int side) {
-    int32_t face = complex->piece_face[piece][side];
-    return face < 0 ? complex->cell_count : face_cell[face]; // the last number stands for the outside
+static int32_t side_cell(const enf_complex *complex, int32_t piece, int side) {
+    int32_t cell = enf_complex_piece_cells(complex, piece)[side];
+    return cell < 0 ? complex->cell_count : cell; // the last number stands for the outside
 }
 
 /// Opens the widest pieces first until the start is joined to the outside. Marks the pieces opened; *last is
 /// the narrowest of them. False without memory.
-static bool open_widest(const enf_complex *complex, const int32_t *face_cell, int32_t start, bool *opened,
-                        opening *last) {
+static bool open_widest(const enf_complex *complex, int32_t start, bool *opened, opening *last) {
     opening *openings = enf_array_new((size_t)complex->pieces.count, sizeof *openings);
     int32_t *parent = enf_array_new((size_t)complex->cell_count + 1, sizeof *parent);
     if (openings && parent) {
@@ -42,7 +41,7 @@ static bool open_widest(const enf_complex *complex, const int32_t *face_cell, in
             int32_t p = openings[i].piece;
             opened[p] = true;
             *last = openings[i];
-            enf_sets_unite(parent, side_cell(complex, face_cell, p, 0), side_cell(complex, face_cell, p, 1));
+            enf_sets_unite(parent, side_cell(complex, p, 0), side_cell(complex, p, 1));
         }
     }
     bool good = openings && parent;
@@ -59,7 +58,7 @@ typedef struct search {
     int32_t *queue;
 } search;
 
-static bool list_open_pieces(search *search, const enf_complex *complex, const int32_t *face_cell) {
+static bool list_open_pieces(search *search, const enf_complex *complex) {
     size_t cells = (size_t)complex->cell_count;
     search->first = enf_array_zeroed(cells + 2, sizeof *search->first);
     search->from = enf_array_new(cells, sizeof *search->from);
@@ -70,8 +69,8 @@ static bool list_open_pieces(search *search, const enf_complex *complex, const i
         for (int32_t p = 0; p < complex->pieces.count; p++) {
             if (!search->opened[p]) continue;
             for (int side = 0; side < 2; side++) {
-                if (complex->piece_face[p][side] < 0) continue;
-                int32_t cell = face_cell[complex->piece_face[p][side]];
+                int32_t cell = enf_complex_piece_cells(complex, p)[side];
+                if (cell < 0) continue;
                 if (pass == 0) {
                     search->first[cell + 2]++;
                 } else {
@@ -85,10 +84,15 @@ static bool list_open_pieces(search *search, const enf_complex *complex, const i
     return true;
 }
 
+/// The cell on the other side of a piece; -1: outside the hull.
+static int32_t beyond(const enf_complex *complex, int32_t piece, int32_t cell) {
+    const int32_t *cells = enf_complex_piece_cells(complex, piece);
+    return cells[cells[0] == cell ? 1 : 0];
+}
+
 /// Fewest cells first. Returns the hull piece through which the outside is reached; *last is the cell before
 /// it.
-static int32_t search_outside(search *search, const enf_complex *complex, const int32_t *face_cell,
-                              int32_t start, int32_t *last) {
+static int32_t search_outside(search *search, const enf_complex *complex, int32_t start, int32_t *last) {
     size_t head = 0, tail = 0;
     search->queue[tail++] = start;
     search->from[start] = -2;
@@ -96,12 +100,11 @@ static int32_t search_outside(search *search, const enf_complex *complex, const 
         int32_t cell = search->queue[head++];
         for (int64_t i = search->first[cell]; i < search->first[cell + 1]; i++) {
             int32_t p = search->pieces[i];
-            const int32_t *face = complex->piece_face[p];
-            if (face[0] < 0 || face[1] < 0) {
+            int32_t next = beyond(complex, p, cell);
+            if (next < 0) {
                 *last = cell;
                 return p;
             }
-            int32_t next = face_cell[face[face_cell[face[0]] == cell ? 1 : 0]];
             if (search->from[next] != -1) continue;
             search->from[next] = p;
             search->queue[tail++] = next;
@@ -111,29 +114,24 @@ static int32_t search_outside(search *search, const enf_complex *complex, const 
 }
 
 static bool write_path(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                       const int32_t *face_cell, const search *search, int32_t exit, int32_t last) {
+                       const search *search, int32_t exit, int32_t last) {
     int32_t count = 2;
-    for (int32_t c = last; search->from[c] != -2; count++) {
-        const int32_t *face = complex->piece_face[search->from[c]];
-        c = face_cell[face[face_cell[face[0]] == c ? 1 : 0]];
-    }
+    for (int32_t c = last; search->from[c] != -2; count++) c = beyond(complex, search->from[c], c);
     regions->leak_points = enf_array_new((size_t)count, sizeof *regions->leak_points);
     if (!regions->leak_points) return false;
     regions->leak_point_count = count;
-    enf_complex_loop_centre(complex, &complex->pieces, exit, regions->leak_points[count - 1]);
+    enf_complex_piece_centre(complex, exit, regions->leak_points[count - 1]);
     int32_t at = count - 2;
     for (int32_t c = last; search->from[c] != -2; at--) {
-        const int32_t *face = complex->piece_face[search->from[c]];
-        enf_complex_loop_centre(complex, &complex->pieces, search->from[c], regions->leak_points[at]);
-        c = face_cell[face[face_cell[face[0]] == c ? 1 : 0]];
+        enf_complex_piece_centre(complex, search->from[c], regions->leak_points[at]);
+        c = beyond(complex, search->from[c], c);
     }
     memcpy(regions->leak_points[0], mesh->spawns + 3 * (size_t)regions->leak_spawn,
            sizeof *regions->leak_points);
     return true;
 }
 
-bool enf_regions_trace_leak(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                            const int32_t *face_cell) {
+bool enf_regions_trace_leak(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh) {
     for (int32_t s = 0; s < regions->spawn_count && !regions->leak; s++) {
         int32_t cell = regions->spawn_cell[s];
         if (cell < 0 || !regions->touches_outside[regions->cell_region[cell]]) continue;
@@ -144,13 +142,13 @@ bool enf_regions_trace_leak(enf_regions *regions, const enf_complex *complex, co
     int32_t start = regions->spawn_cell[regions->leak_spawn], last = -1;
     opening neck = {0};
     search search = {.opened = enf_array_zeroed((size_t)complex->pieces.count, sizeof *search.opened)};
-    bool good = search.opened && open_widest(complex, face_cell, start, search.opened, &neck) &&
-                list_open_pieces(&search, complex, face_cell);
+    bool good = search.opened && open_widest(complex, start, search.opened, &neck) &&
+                list_open_pieces(&search, complex);
     if (good) {
         regions->leak_width = neck.width;
-        enf_complex_loop_centre(complex, &complex->pieces, neck.piece, regions->leak_neck);
-        int32_t exit = search_outside(&search, complex, face_cell, start, &last);
-        good = exit < 0 || write_path(regions, complex, mesh, face_cell, &search, exit, last);
+        enf_complex_piece_centre(complex, neck.piece, regions->leak_neck);
+        int32_t exit = search_outside(&search, complex, start, &last);
+        good = exit < 0 || write_path(regions, complex, mesh, &search, exit, last);
     }
     free(search.opened);
     free(search.first);

@@ -8,7 +8,6 @@
 /// Fills the leak fields of coloured regions with spawns placed. The path is the one whose narrowest opening
 /// is widest, and of those one through the fewest cells: it leads through the hole itself, not through a
 /// hairline beside it. False without memory.
-bool enf_regions_trace_leak(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                            const int32_t *face_cell);
+bool enf_regions_trace_leak(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh);
 
 #endif

@@ -13,8 +13,7 @@ enum { PIECE_OPEN = -1 }; // see enf_complex.piece_cover
 typedef struct cutter {
     const enf_plan *plan;
     const enf_file_view *view;
-    double (*at)[3];    ///< per vertex: page x, page y, height
-    int32_t *face_cell; ///< per face: its fine cell's cell
+    double (*at)[3]; ///< per vertex: page x, page y, height
     enf_storey *storey;
     double (*points)[2]; ///< of the cell being cut
     size_t point_count, point_capacity;
@@ -61,7 +60,7 @@ static void set_box(enf_plan *plan, const enf_file_view *view) {
     if (view->cell_count == 0) plan->low[0] = plan->low[1] = 0, plan->high[0] = plan->high[1] = 1;
 }
 
-/// Where the edge a-b meets the plane, computed from the lower end so that both its faces find the same
+/// Where the edge a-b meets the plane, computed from the lower end so that both its facets find the same
 /// point.
 static void cross(const double *a, const double *b, double height, double out[2]) {
     const double *low = a[2] < b[2] ? a : b, *high = a[2] < b[2] ? b : a;
@@ -73,12 +72,12 @@ static bool is_crossed(const double *a, const double *b, double height) {
     return (a[2] >= height) != (b[2] >= height);
 }
 
-static bool cut_face(cutter *cut, int32_t face) {
+static bool cut_facet(cutter *cut, int32_t facet) {
     const enf_file_view *view = cut->view;
-    int64_t first = view->face_offset[face], end = view->face_offset[face + 1];
-    const double *previous = first < end ? cut->at[view->face_corners[end - 1].vertex] : NULL;
+    int64_t first = view->facet_offset[facet], end = view->facet_offset[facet + 1];
+    const double *previous = first < end ? cut->at[view->facet_corners[end - 1].vertex] : NULL;
     for (int64_t c = first; c < end; c++) {
-        const double *at = cut->at[view->face_corners[c].vertex];
+        const double *at = cut->at[view->facet_corners[c].vertex];
         if (is_crossed(previous, at, cut->storey->height)) {
             if (!enf_array_reserve(cut->points, cut->point_capacity, cut->point_count + 1)) return false;
             cross(previous, at, cut->storey->height, cut->points[cut->point_count++]);
@@ -137,16 +136,22 @@ static bool cut_piece(cutter *cut, int32_t piece) {
     if (view->piece_cover[piece] == PIECE_OPEN) return true;
     bool kept = false;
     for (int side = 0; side < 2; side++) {
-        int32_t face = view->piece_face[piece][side];
-        kept = kept || (face >= 0 && cut->face_cell[face] >= 0);
+        int32_t fine = view->facet_fine[view->piece_facet[piece]][side];
+        kept = kept || (fine >= 0 && view->fine_cell[fine] >= 0);
     }
     if (!kept) return true;
+    const enf_file_corner *corners = view->piece_corners;
     int64_t first = view->piece_offset[piece], end = view->piece_offset[piece + 1];
+    if (first == end) { // the whole facet
+        corners = view->facet_corners;
+        first = view->facet_offset[view->piece_facet[piece]];
+        end = view->facet_offset[view->piece_facet[piece] + 1];
+    }
     double ends[2][2], height = cut->storey->height;
     int count = 0;
-    const double *previous = first < end ? cut->at[view->piece_corners[end - 1].vertex] : NULL;
+    const double *previous = first < end ? cut->at[corners[end - 1].vertex] : NULL;
     for (int64_t c = first; c < end && count < 2; c++) {
-        const double *at = cut->at[view->piece_corners[c].vertex];
+        const double *at = cut->at[corners[c].vertex];
         if (is_crossed(previous, at, height)) cross(previous, at, height, ends[count++]);
         previous = at;
     }
@@ -185,7 +190,8 @@ static bool cut_storey(cutter *cut, enf_storey *storey) {
     for (int32_t i = 0; good && i < view->fine_count; i++) {
         if (view->fine_cell[i] < 0) continue;
         cut->point_count = 0;
-        for (int32_t f = view->fine_face[i]; good && f < view->fine_face[i + 1]; f++) good = cut_face(cut, f);
+        for (int32_t f = view->fine_facet[i]; good && f < view->fine_facet[i + 1]; f++)
+            good = cut_facet(cut, view->fine_facets[f]);
         good = good && add_area(cut, view->fine_cell[i]);
     }
     for (int32_t i = 0; good && i < view->piece_count; i++) good = cut_piece(cut, i);
@@ -197,16 +203,12 @@ static bool cut_storey(cutter *cut, enf_storey *storey) {
 static bool prepare(cutter *cut) {
     const enf_file_view *view = cut->view;
     cut->at = enf_array_new((size_t)view->vertex_count, sizeof *cut->at);
-    cut->face_cell = enf_array_new((size_t)view->face_count, sizeof *cut->face_cell);
-    if (!cut->at || !cut->face_cell) return false;
+    if (!cut->at) return false;
     for (int32_t i = 0; i < view->vertex_count; i++) {
         double world[3];
         enf_plan_grid_to_world(view, view->vertex_position[i], world);
         cut->at[i][2] = enf_plan_project(cut->plan, world, cut->at[i]);
     }
-    for (int32_t i = 0; i < view->fine_count; i++)
-        for (int32_t f = view->fine_face[i]; f < view->fine_face[i + 1]; f++)
-            cut->face_cell[f] = view->fine_cell[i];
     return true;
 }
 
@@ -225,7 +227,6 @@ enf_status enf_plan_make(enf_plan *plan, const enf_file_view *view, int up, enf_
     }
     good = good && enf_storeys_outline(plan, view);
     free(cut.at);
-    free(cut.face_cell);
     free(cut.points);
     return good ? ENF_OK : enf_fail_memory(error, "the floor plans");
 }

@@ -405,11 +405,9 @@ static bool find_between(finder *f, const gap *gaps, size_t count) {
     f->pool.corner_count = 0;
     if (!enf_array_reserve(f->sheets, f->sheet_capacity, count)) return false;
     for (size_t i = 0; i < count; i++) {
-        const enf_loops *pieces = &complex->pieces;
-        int64_t begin = pieces->offset[gaps[i].piece], end = pieces->offset[gaps[i].piece + 1];
-        int32_t face = complex->piece_face[gaps[i].piece][0];
-        int32_t plane = complex->facet_plane[complex->face_facet[face]];
-        enf_loop loop = enf_pool_loop(&f->pool, plane, pieces->corners + begin, (int32_t)(end - begin));
+        int32_t corner_count, plane = complex->facet_plane[complex->piece_facet[gaps[i].piece]];
+        const enf_corner *corners = enf_complex_piece(complex, gaps[i].piece, &corner_count);
+        enf_loop loop = enf_pool_loop(&f->pool, plane, corners, corner_count);
         if (f->pool.failed) return false;
         for (int32_t c = 0; c < loop.count; c++) {
             enf_corner *corner = &f->pool.corners[loop.first + c];
@@ -432,24 +430,19 @@ static bool find_between(finder *f, const gap *gaps, size_t count) {
 
 static bool collect_gaps(const enf_complex *complex, const int32_t *cell_of, gap **gaps, size_t *gap_count) {
     size_t count = 0, capacity = 0;
-    int32_t *face_cell = enf_complex_face_cells(complex);
     *gaps = NULL;
-    for (int32_t p = 0; face_cell && p < complex->pieces.count; p++) {
-        const int32_t *face = complex->piece_face[p];
-        if (complex->piece_cover[p] != ENF_PIECE_OPEN || face[0] < 0 || face[1] < 0) continue;
-        int32_t behind = cell_of[face_cell[face[0]]], front = cell_of[face_cell[face[1]]];
+    for (int32_t p = 0; p < complex->pieces.count; p++) {
+        const int32_t *cell = enf_complex_piece_cells(complex, p);
+        if (complex->piece_cover[p] != ENF_PIECE_OPEN || cell[0] < 0 || cell[1] < 0) continue;
+        int32_t behind = cell_of[cell[0]], front = cell_of[cell[1]];
         if (behind == front || behind < 0 || front < 0) continue;
-        if (!enf_array_reserve(*gaps, capacity, count + 1)) {
-            free(face_cell);
-            return false;
-        }
+        if (!enf_array_reserve(*gaps, capacity, count + 1)) return false;
         bool ordered = behind < front;
         (*gaps)[count++] = (gap){ordered ? behind : front, ordered ? front : behind, p, ordered};
     }
     if (count) qsort(*gaps, count, sizeof **gaps, compare_gaps);
     *gap_count = count;
-    free(face_cell);
-    return face_cell != NULL;
+    return true;
 }
 
 /// The geometry of the finished complex once more: planes with filters, crossings as they are needed.

@@ -42,30 +42,21 @@ void enf_regions_free(enf_regions *regions) {
 
 // ---------------------------------------------------------------------------------------------- components
 
-/// The cells on both sides of a piece; -1 outside the hull.
-static void piece_cells(const enf_complex *complex, const int32_t *face_cell, int32_t piece,
-                        int32_t cell[2]) {
-    for (int side = 0; side < 2; side++) {
-        int32_t face = complex->piece_face[piece][side];
-        cell[side] = face < 0 ? -1 : face_cell[face];
-    }
-}
-
 /// Joins cells through open pieces at least `crack` wide, then those in the open that only cracks bound
 /// (needles), then seals the cracks that are left between different components. parent[cells] is the outside
 /// of the hull.
-static void join_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack,
-                       int32_t *parent, bool *walled) {
-    int32_t outside = complex->cell_count, cell[2];
+static void join_cells(enf_regions *regions, enf_complex *complex, double crack, int32_t *parent,
+                       bool *walled) {
+    int32_t outside = complex->cell_count;
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
         if (crack > 0 && enf_complex_piece_width(complex, p) < crack) continue;
-        piece_cells(complex, face_cell, p, cell);
+        const int32_t *cell = enf_complex_piece_cells(complex, p);
         enf_sets_unite(parent, cell[0] < 0 ? outside : cell[0], cell[1] < 0 ? outside : cell[1]);
     }
     if (!(crack > 0)) return;
     for (int32_t p = 0; p < complex->pieces.count; p++) {
-        piece_cells(complex, face_cell, p, cell);
+        const int32_t *cell = enf_complex_piece_cells(complex, p);
         for (int side = 0; side < 2; side++) {
             bool wall = complex->piece_cover[p] != ENF_PIECE_OPEN;
             if (wall && cell[side] >= 0) walled[enf_sets_find(parent, cell[side])] = true;
@@ -73,7 +64,7 @@ static void join_cells(enf_regions *regions, enf_complex *complex, const int32_t
     }
     walled[enf_sets_find(parent, outside)] = true;
     for (int32_t p = 0; p < complex->pieces.count; p++) {
-        piece_cells(complex, face_cell, p, cell);
+        const int32_t *cell = enf_complex_piece_cells(complex, p);
         if (complex->piece_cover[p] != ENF_PIECE_OPEN || cell[0] < 0 || cell[1] < 0) continue;
         int32_t a = enf_sets_find(parent, cell[0]), b = enf_sets_find(parent, cell[1]);
         if (a == b || (walled[a] && walled[b])) continue;
@@ -83,7 +74,7 @@ static void join_cells(enf_regions *regions, enf_complex *complex, const int32_t
     }
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
-        piece_cells(complex, face_cell, p, cell);
+        const int32_t *cell = enf_complex_piece_cells(complex, p);
         int32_t a = cell[0] < 0 ? outside : cell[0], b = cell[1] < 0 ? outside : cell[1];
         if (enf_sets_find(parent, a) == enf_sets_find(parent, b)) continue;
         double area[3];
@@ -95,7 +86,7 @@ static void join_cells(enf_regions *regions, enf_complex *complex, const int32_t
 }
 
 /// Regions are the components over the pieces that are open now, numbered by their smallest cell.
-static bool colour_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack) {
+static bool colour_cells(enf_regions *regions, enf_complex *complex, double crack) {
     int32_t cells = complex->cell_count;
     int32_t *parent = enf_array_new((size_t)cells + 1, sizeof *parent);
     bool *walled = enf_array_zeroed((size_t)cells + 1, sizeof *walled);
@@ -103,11 +94,10 @@ static bool colour_cells(enf_regions *regions, enf_complex *complex, const int32
     bool good = parent && walled && regions->cell_region;
     if (good) {
         enf_sets_start(parent, cells + 1);
-        join_cells(regions, complex, face_cell, crack, parent, walled);
+        join_cells(regions, complex, crack, parent, walled);
         enf_sets_start(parent, cells + 1);
         for (int32_t p = 0; p < complex->pieces.count; p++) {
-            int32_t cell[2];
-            piece_cells(complex, face_cell, p, cell);
+            const int32_t *cell = enf_complex_piece_cells(complex, p);
             if (complex->piece_cover[p] == ENF_PIECE_OPEN && cell[0] >= 0 && cell[1] >= 0) {
                 enf_sets_unite(parent, cell[0], cell[1]);
             }
@@ -140,10 +130,9 @@ static bool allocate(enf_regions *regions) {
 
 /// Areas of fronts and backs, and whether the hull is open somewhere. `bodies` get all closed area as
 /// surface.
-static void measure_pieces(enf_regions *regions, const enf_complex *complex, const int32_t *face_cell,
-                           enf_body_size *bodies) {
+static void measure_pieces(enf_regions *regions, const enf_complex *complex, enf_body_size *bodies) {
     for (int32_t p = 0; p < complex->pieces.count; p++) {
-        const int32_t *face = complex->piece_face[p];
+        const int32_t *cell = enf_complex_piece_cells(complex, p);
         int32_t cover = complex->piece_cover[p];
         double area[3] = {0}, size = 0;
         if (cover != ENF_PIECE_OPEN) {
@@ -151,11 +140,11 @@ static void measure_pieces(enf_regions *regions, const enf_complex *complex, con
             size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
         }
         for (int side = 0; side < 2; side++) {
-            if (face[side] < 0) continue;
-            int32_t region = regions->cell_region[face_cell[face[side]]];
+            if (cell[side] < 0) continue;
+            int32_t region = regions->cell_region[cell[side]];
             bodies[region].surface += size;
             if (cover == ENF_PIECE_OPEN) {
-                if (face[1 - side] < 0) regions->touches_outside[region] = true;
+                if (cell[1 - side] < 0) regions->touches_outside[region] = true;
             } else if (cover >= 0) {
                 bool front = complex->cover_side[cover] == side;
                 *(front ? &regions->front_area[region] : &regions->back_area[region]) += size;
@@ -164,8 +153,7 @@ static void measure_pieces(enf_regions *regions, const enf_complex *complex, con
     }
 }
 
-static bool measure(enf_regions *regions, const enf_complex *complex, const int32_t *face_cell,
-                    double crack) {
+static bool measure(enf_regions *regions, const enf_complex *complex, double crack) {
     enf_body_size *bodies = enf_array_new((size_t)regions->region_count, sizeof *bodies);
     if (!bodies) return false;
     for (int32_t r = 0; r < regions->region_count; r++) {
@@ -179,7 +167,7 @@ static bool measure(enf_regions *regions, const enf_complex *complex, const int3
         regions->volume[r] = fmax(bodies[r].volume, 0); // of hairlines, rounding may leave less than nothing
         bodies[r].surface = 0;                          // only the closed part of the faces counts
     }
-    measure_pieces(regions, complex, face_cell, bodies);
+    measure_pieces(regions, complex, bodies);
     for (int32_t r = 0; r < regions->region_count; r++) {
         regions->hairline[r] = !regions->touches_outside[r] && enf_body_is_hairline(&bodies[r], crack);
     }
@@ -297,19 +285,16 @@ static enf_status keep_regions(enf_regions *regions, enf_keep keep, enf_error *e
 enf_status enf_regions_colour(enf_regions *regions, enf_complex *complex, const enf_mesh *mesh,
                               const enf_tet_mesh *tets, enf_keep keep, double crack, enf_error *error) {
     memset(regions, 0, sizeof *regions);
-    int32_t *face_cell = enf_complex_face_cells(complex);
-    bool good = face_cell && colour_cells(regions, complex, face_cell, crack) && allocate(regions);
+    bool good = colour_cells(regions, complex, crack) && allocate(regions);
     if (good) {
-        good = measure(regions, complex, face_cell, crack) &&
-               enf_complex_wind(complex, mesh, face_cell, regions->cell_region, regions->region_count,
-                                regions->winding, regions->ambiguous);
+        good = measure(regions, complex, crack) &&
+               enf_complex_wind(complex, mesh, regions->cell_region, regions->region_count, regions->winding,
+                                regions->ambiguous);
     }
     if (good) {
         judge(regions);
-        good = place_spawns(regions, complex, mesh, tets) &&
-               enf_regions_trace_leak(regions, complex, mesh, face_cell);
+        good = place_spawns(regions, complex, mesh, tets) && enf_regions_trace_leak(regions, complex, mesh);
     }
-    free(face_cell);
     enf_status status = good ? keep_regions(regions, keep, error) : enf_fail_memory(error, "the regions");
     if (status != ENF_OK) enf_regions_free(regions);
     return status;

@@ -32,14 +32,13 @@ static int compare_areas(const void *a, const void *b) {
 }
 
 /// Is the point inside the convex loop, seen along the plane's longest axis?
-static bool holds(const enf_complex *complex, const enf_loops *loops, int32_t loop, const double point[3],
+static bool holds(const enf_complex *complex, const enf_corner *corners, int32_t count, const double point[3],
                   int axis) {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    int64_t begin = loops->offset[loop], end = loops->offset[loop + 1];
     bool left = true, right = true;
-    for (int64_t i = begin; i < end; i++) {
-        const double *p = complex->vertex_position[loops->corners[i].vertex];
-        const double *q = complex->vertex_position[loops->corners[i + 1 < end ? i + 1 : begin].vertex];
+    for (int32_t i = 0; i < count; i++) {
+        const double *p = complex->vertex_position[corners[i].vertex];
+        const double *q = complex->vertex_position[corners[i + 1 < count ? i + 1 : 0].vertex];
         double turn = (q[u] - p[u]) * (point[v] - p[v]) - (q[v] - p[v]) * (point[u] - p[u]);
         left &= turn >= 0;
         right &= turn <= 0;
@@ -50,13 +49,15 @@ static bool holds(const enf_complex *complex, const enf_loops *loops, int32_t lo
 /// Solids entered when going from the facet's front to its back through the middle of a piece.
 static int32_t solids_behind(const enf_complex *complex, const enf_mesh *mesh, int32_t facet, int32_t piece,
                              const double area[3]) {
-    int32_t count = 0;
+    int32_t count = 0, corner_count;
     double centre[3];
     int axis = fabs(area[0]) > fabs(area[1]) ? (fabs(area[0]) > fabs(area[2]) ? 0 : 2)
                                              : (fabs(area[1]) > fabs(area[2]) ? 1 : 2);
-    enf_complex_loop_centre(complex, &complex->pieces, piece, centre);
+    enf_complex_piece_centre(complex, piece, centre);
     for (int32_t c = complex->facet_cover[facet]; c < complex->facet_cover[facet + 1]; c++) {
-        if (c != complex->piece_cover[piece] && !holds(complex, &complex->covers, c, centre, axis)) continue;
+        const enf_corner *corners = enf_complex_cover(complex, c, facet, &corner_count);
+        if (c != complex->piece_cover[piece] && !holds(complex, corners, corner_count, centre, axis))
+            continue;
         int32_t copies = mesh->polygon_copies[complex->cover_polygon[c]];
         count += complex->cover_side[c] == 1 ? copies : -copies;
     }
@@ -65,17 +66,16 @@ static int32_t solids_behind(const enf_complex *complex, const enf_mesh *mesh, i
 
 /// One vote per occluded piece; votes for the same claim are added up. The outside is region number
 /// region_count.
-static bool collect_votes(const enf_complex *complex, const enf_mesh *mesh, const int32_t *face_cell,
-                          const int32_t *cell_region, int32_t region_count, vote **votes,
-                          size_t *vote_count) {
+static bool collect_votes(const enf_complex *complex, const enf_mesh *mesh, const int32_t *cell_region,
+                          int32_t region_count, vote **votes, size_t *vote_count) {
     size_t count = 0, capacity = 0;
     *votes = NULL;
     for (int32_t facet = 0; facet < complex->facet_count; facet++) {
         for (int32_t p = complex->facet_piece[facet]; p < complex->facet_piece[facet + 1]; p++) {
             int32_t side[2];
             for (int k = 0; k < 2; k++) {
-                int32_t face = complex->piece_face[p][k];
-                side[k] = face < 0 ? region_count : cell_region[face_cell[face]];
+                int32_t cell = complex->facet_cell[facet][k];
+                side[k] = cell < 0 ? region_count : cell_region[cell];
             }
             if (complex->piece_cover[p] == ENF_PIECE_SEALED) continue; // no polygon, no vote
             bool open = complex->piece_cover[p] == ENF_PIECE_OPEN;
@@ -121,15 +121,15 @@ static int32_t find_root(int32_t *parent, int32_t *difference, int32_t region) {
     return root;
 }
 
-bool enf_complex_wind(const enf_complex *complex, const enf_mesh *mesh, const int32_t *face_cell,
-                      const int32_t *cell_region, int32_t region_count, int32_t *winding, bool *ambiguous) {
+bool enf_complex_wind(const enf_complex *complex, const enf_mesh *mesh, const int32_t *cell_region,
+                      int32_t region_count, int32_t *winding, bool *ambiguous) {
     vote *votes;
     size_t vote_count;
     size_t nodes = (size_t)region_count + 1;
     int32_t *parent = enf_array_new(nodes, sizeof *parent),
             *difference = enf_array_zeroed(nodes, sizeof *difference);
-    bool good = collect_votes(complex, mesh, face_cell, cell_region, region_count, &votes, &vote_count) &&
-                parent && difference;
+    bool good =
+        collect_votes(complex, mesh, cell_region, region_count, &votes, &vote_count) && parent && difference;
     for (int32_t r = 0; good && r <= region_count; r++) parent[r] = r;
     memset(ambiguous, 0, (size_t)region_count * sizeof *ambiguous);
     for (size_t i = 0; good && i < vote_count; i++) {

@@ -6,8 +6,8 @@
 #include "build/complex.h"
 
 /// Fills winding[r] and ambiguous[r] for `region_count` regions of cells. Regions that reach the outside of
-/// the hull have winding 0. `face_cell`: see enf_complex_face_cells. False without memory.
-bool enf_complex_wind(const enf_complex *complex, const enf_mesh *mesh, const int32_t *face_cell,
-                      const int32_t *cell_region, int32_t region_count, int32_t *winding, bool *ambiguous);
+/// the hull have winding 0. False without memory.
+bool enf_complex_wind(const enf_complex *complex, const enf_mesh *mesh, const int32_t *cell_region,
+                      int32_t region_count, int32_t *winding, bool *ambiguous);
 
 #endif

@@ -66,20 +66,17 @@ static void lend_complex(enf_file_view *view, const enf_complex *complex) {
     view->node_count = complex->node_count;
     view->node_plane = complex->node_plane;
     view->node_child = (void *)complex->node_child;
-    view->node_facet = complex->node_facet;
     view->fine_count = complex->cell_count;
-    view->fine_tetrahedron = complex->cell_tetrahedron;
-    view->fine_face = complex->cell_face;
-    view->face_facet = complex->face_facet;
-    view->face_side = complex->face_side;
-    view->facet_count = complex->facet_count;
+    view->fine_facet = complex->cell_facet;
+    view->fine_facets = complex->cell_facets;
+    view->fine_facet_count = complex->cell_facet ? complex->cell_facet[complex->cell_count] : 0;
     view->facet_plane = complex->facet_plane;
-    view->facet_hull = (const void *)complex->facet_hull;
+    view->facet_fine = (void *)complex->facet_cell;
     view->facet_cover = complex->facet_cover;
     view->facet_piece = complex->facet_piece;
     view->cover_polygon = complex->cover_polygon;
     view->cover_side = complex->cover_side;
-    view->piece_face = (void *)complex->piece_face;
+    view->piece_facet = complex->piece_facet;
     view->piece_cover = complex->piece_cover;
     view->seen_offset = complex->seen_offset;
     view->seen = complex->seen;
@@ -97,8 +94,8 @@ static void lend_loops(const enf_loops *loops, int32_t *count, const int64_t **o
 static void lend_arrays(enf_file_view *view, const enf_build *build) {
     const enf_complex *complex = &build->complex;
     lend_complex(view, complex);
-    lend_loops(&complex->faces, &view->face_count, &view->face_offset, &view->face_corner_count,
-               &view->face_corners);
+    lend_loops(&complex->facets, &view->facet_count, &view->facet_offset, &view->facet_corner_count,
+               &view->facet_corners);
     lend_loops(&complex->covers, &view->cover_count, &view->cover_offset, &view->cover_corner_count,
                &view->cover_corners);
     lend_loops(&complex->pieces, &view->piece_count, &view->piece_offset, &view->piece_corner_count,
@@ -267,10 +264,10 @@ static enf_status make_spawns(enf_image *image, const enf_build *build, enf_erro
 // --- Cells
 // -------------------------------------------------------------------------------------------------------
 
-/// Volume of the cone from `apex` over a loop: positive if the apex lies behind it. Grid steps cubed.
-static double cone_volume(const enf_complex *complex, int32_t face, const double apex[3]) {
-    const enf_corner *corners = complex->faces.corners + complex->faces.offset[face];
-    int64_t count = complex->faces.offset[face + 1] - complex->faces.offset[face];
+/// Volume of the cone from `apex` over a facet: positive if the apex lies behind it. Grid steps cubed.
+static double cone_volume(const enf_complex *complex, int32_t facet, const double apex[3]) {
+    const enf_corner *corners = complex->facets.corners + complex->facets.offset[facet];
+    int64_t count = complex->facets.offset[facet + 1] - complex->facets.offset[facet];
     double sum = 0;
     for (int64_t k = 1; k + 1 < count; k++) {
         const int64_t pick[3] = {0, k, k + 1};
@@ -283,22 +280,24 @@ static double cone_volume(const enf_complex *complex, int32_t face, const double
                e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
                e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
     }
-    return (complex->face_side[face] ? -sum : sum) / 6;
+    return sum / 6;
 }
 
 /// Adds a fine cell to the box (world) and volume (grid steps cubed) of its cell.
 static void add_fine_cell(enf_file_cell *cell, const enf_build *build, int32_t fine) {
     const enf_complex *complex = &build->complex;
     const double *apex = NULL;
-    for (int32_t face = complex->cell_face[fine]; face < complex->cell_face[fine + 1]; face++) {
-        for (int64_t k = complex->faces.offset[face]; k < complex->faces.offset[face + 1]; k++) {
-            const double *at = complex->vertex_position[complex->faces.corners[k].vertex];
+    for (int32_t i = complex->cell_facet[fine]; i < complex->cell_facet[fine + 1]; i++) {
+        int32_t facet = complex->cell_facets[i];
+        for (int64_t k = complex->facets.offset[facet]; k < complex->facets.offset[facet + 1]; k++) {
+            const double *at = complex->vertex_position[complex->facets.corners[k].vertex];
             double world[3];
             enf_frame_to_world(&build->mesh.frame, at, world);
             grow_box(cell->box_min, cell->box_max, world);
             if (!apex) apex = at;
         }
-        if (apex) cell->volume += cone_volume(complex, face, apex);
+        double cone = apex ? cone_volume(complex, facet, apex) : 0;
+        cell->volume += complex->facet_cell[facet][0] == fine ? cone : -cone;
     }
 }
 

@@ -242,8 +242,8 @@ typedef struct detail {
 
 typedef struct detail_finder {
     drawer *d;
-    int32_t *fine_offset, *fine; ///< fine cells of each tetrahedron
-    int32_t *stamp;              ///< per cell: the last triangle noted for it, + 1
+    int32_t *stack; ///< nodes to visit
+    int32_t *stamp; ///< per cell: the last triangle noted for it, + 1
     detail *details;
     size_t detail_count, detail_capacity;
 } detail_finder;
@@ -275,10 +275,18 @@ static bool is_apart(const enf_file_view *view, const int32_t tetrahedron[4], co
     return false;
 }
 
+/// The cells of all leaves of a tetrahedron's tree.
 static bool note_cells(detail_finder *f, int32_t tetrahedron, int32_t triangle) {
     const enf_build *build = f->d->build;
-    for (int32_t i = f->fine_offset[tetrahedron]; i < f->fine_offset[tetrahedron + 1]; i++) {
-        int32_t cell = build->cell_of[f->fine[i]];
+    size_t depth = 0;
+    f->stack[depth++] = build->complex.tetrahedron_root[tetrahedron];
+    while (depth > 0) {
+        int32_t at = f->stack[--depth];
+        if (at >= 0) {
+            for (int side = 0; side < 2; side++) f->stack[depth++] = build->complex.node_child[at][side];
+            continue;
+        }
+        int32_t cell = build->cell_of[-1 - at];
         if (cell < 0 || f->stamp[cell] == triangle + 1) continue;
         f->stamp[cell] = triangle + 1;
         if (!enf_array_reserve(f->details, f->detail_capacity, f->detail_count + 1))
@@ -330,9 +338,8 @@ static bool find_details(detail_finder *f) {
     if (first == count) return true;
     const enf_complex *complex = &d->build->complex;
     f->stamp = enf_array_zeroed((size_t)d->build->cell_count, sizeof *f->stamp);
-    if (!f->stamp || !group_by(complex->cell_tetrahedron, complex->cell_count, complex->tetrahedron_count,
-                               &f->fine_offset, &f->fine))
-        return out_of_memory(d);
+    f->stack = enf_array_new((size_t)complex->node_count + 1, sizeof *f->stack);
+    if (!f->stamp || !f->stack) return out_of_memory(d);
     for (int32_t i = first; i < count; i++) {
         if (!find_cells(f, i)) return false;
     }
@@ -371,8 +378,7 @@ static bool list_triangles(drawer *d) {
     free(fine);
     free(stamp);
     free(found);
-    free(finder.fine_offset);
-    free(finder.fine);
+    free(finder.stack);
     free(finder.stamp);
     free(finder.details);
     return good;

@@ -3,8 +3,8 @@
 // inside a tetrahedron gives the fine cell. All sides are exact, so a point on a boundary is *known* to be on
 // it, and the rule for boundaries (run.h) can be kept to the letter.
 //
-// A hint, the fine cell of an earlier answer, is tried first: its tetrahedron, then a walk towards the point
-// across faces (O. Devillers, S. Pion, M. Teillaud, "Walking in a triangulation", 2002), for a bounded number
+// A hint, the tetrahedron of an earlier answer, is tried first, then a walk from it towards the point across
+// faces (O. Devillers, S. Pion, M. Teillaud, "Walking in a triangulation", 2002), for a bounded number
 // of steps.
 #include "format/locate.h"
 
@@ -20,6 +20,7 @@ typedef struct query {
     const enf_file_view *view;
     double at[3]; ///< whole numbers of the finer grid: grid coordinates times frame->locate_scale
     int32_t best; ///< fine cell, or -1
+    int32_t best_tetrahedron;
 } query;
 
 // Corner k is opposite to the face with these corners, which turn counter-clockwise seen from inside.
@@ -74,12 +75,14 @@ static int plane_side(const query *query, int32_t plane) {
 }
 
 /// Cells before discarded space, then the lower number.
-static void consider(query *query, int32_t fine) {
+static void consider(query *query, int32_t tetrahedron, int32_t fine) {
     const int32_t *cell = query->view->fine_cell;
     int32_t best = query->best;
     if (best < 0 || (cell[fine] >= 0) > (cell[best] >= 0) ||
-        ((cell[fine] >= 0) == (cell[best] >= 0) && fine < best))
+        ((cell[fine] >= 0) == (cell[best] >= 0) && fine < best)) {
         query->best = fine;
+        query->best_tetrahedron = tetrahedron;
+    }
 }
 
 /// Considers every fine cell of the tetrahedron that touches the point. True if there is one only.
@@ -99,7 +102,7 @@ static bool descend(query *query, int32_t tetrahedron) {
             }
             node = view->node_child[node][side >= 0];
         }
-        consider(query, -1 - node);
+        consider(query, tetrahedron, -1 - node);
     }
     return single;
 }
@@ -107,7 +110,7 @@ static bool descend(query *query, int32_t tetrahedron) {
 /// The walk from a hint. True if it ended strictly inside a fine cell; otherwise nothing has been found.
 static bool walk(query *query, int32_t hint) {
     const enf_file_view *view = query->view;
-    int32_t tetrahedron = view->fine_tetrahedron[hint];
+    int32_t tetrahedron = hint;
     for (int step = 0; step < WALK_STEPS_MAX && tetrahedron >= 0; step++) {
         int away = 0, side = tetrahedron_side(query, tetrahedron, &away);
         if (side > 0) {
@@ -184,19 +187,20 @@ static void search_nearest(query *query) {
 
 enf_place enf_view_locate(const enf_file_view *view, const double point[3], int32_t hint) {
     const enf_file_frame *frame = view->frame;
-    const enf_place nowhere = {-1, -1, -1, ENF_WORLD_OUTSIDE};
-    query query = {.view = view, .best = -1};
+    const enf_place nowhere = {-1, -1, -1, -1, ENF_WORLD_OUTSIDE};
+    query query = {.view = view, .best = -1, .best_tetrahedron = -1};
     for (int a = 0; a < 3; a++) {
         double scaled = frame->sign[a] * (point[frame->axis[a]] / frame->step) * frame->locate_scale;
         if (!(fabs(scaled) <= ENF_FILE_GRID_MAX)) return nowhere;
         query.at[a] = nearbyint(scaled);
     }
-    bool hinted = hint >= 0 && hint < view->fine_count && walk(&query, hint);
+    bool hinted = hint >= 0 && hint < view->tetrahedron_count && walk(&query, hint);
     if (!hinted) search(&query);
     if (query.best < 0) search_nearest(&query);
     if (query.best < 0) return nowhere;
     int32_t region = view->fine_region[query.best];
-    enf_place place = {view->fine_cell[query.best], query.best, region, ENF_WORLD_AIR};
+    enf_place place = {view->fine_cell[query.best], query.best, region, query.best_tetrahedron,
+                       ENF_WORLD_AIR};
     place.kind = (enf_world_kind)view->regions[region].kind;
     return place;
 }

@@ -11,7 +11,7 @@
 #include "enfilade/base.h"
 
 #define ENF_FILE_MAGIC "ENFILADE"            ///< 8 bytes, no terminating zero in the file
-#define ENF_FILE_MAJOR 1                     ///< a reader refuses another major version
+#define ENF_FILE_MAJOR 2                     ///< a reader refuses another major version
 #define ENF_FILE_MINOR 0                     ///< a reader accepts any minor version of its major one
 #define ENF_FILE_ALIGNMENT 16                ///< sections begin at multiples of this
 #define ENF_FILE_GRID_MAX 9007199254740992.0 ///< 2^53: no grid coordinate is larger in magnitude
@@ -180,7 +180,7 @@ typedef struct enf_file_view {
     const int32_t (*planes)[3]; ///< as in enf_complex
     int32_t tetrahedron_count;
     const int32_t (*tetrahedra)[4];
-    const int32_t *tetrahedron_root; ///< >= 0: node; < 0: fine cell -1 - root
+    const int32_t *tetrahedron_root; ///< >= 0: node; < 0: fine cell -1 - root; several may name the same one
     const int32_t (
         *tetrahedron_next)[4]; ///< the tetrahedron across the face opposite to each corner; -1: the hull
     int32_t node_count;
@@ -190,7 +190,6 @@ typedef struct enf_file_view {
     const double (
         *node_normal)[3]; ///< of the node's plane, length 1; the plane goes through points[planes[p][0]]
     int32_t fine_count;
-    const int32_t *fine_tetrahedron;
     const int32_t *fine_region;
     const int32_t *fine_cell; ///< the cell it went into; -1: discarded
     int32_t box_count;
@@ -201,21 +200,19 @@ typedef struct enf_file_view {
     int32_t vertex_count;
     const int32_t (*vertex_planes)[3];
     const double (*vertex_position)[3];
-    const int32_t *node_facet;
-    const int32_t *fine_face; ///< fine_count + 1
-    int32_t face_count;
-    const int64_t *face_offset;
-    int64_t face_corner_count;
-    const enf_file_corner *face_corners;
-    const int32_t *face_facet;
-    const uint8_t *face_side;
+    const int32_t *fine_facet; ///< fine_count + 1 offsets into fine_facets
+    int32_t fine_facet_count;
+    const int32_t *fine_facets;
     int32_t facet_count;
+    const int64_t *facet_offset;
+    int64_t facet_corner_count;
+    const enf_file_corner *facet_corners;
     const int32_t *facet_plane;
-    const uint8_t *facet_hull;  ///< 0 or 1
-    const int32_t *facet_cover; ///< facet_count + 1
-    const int32_t *facet_piece; ///< facet_count + 1
+    const int32_t (*facet_fine)[2]; ///< the fine cells behind and in front; -1: outside the hull
+    const int32_t *facet_cover;     ///< facet_count + 1
+    const int32_t *facet_piece;     ///< facet_count + 1
     int32_t cover_count;
-    const int64_t *cover_offset;
+    const int64_t *cover_offset; ///< a cover or piece without corners is the whole facet
     int64_t cover_corner_count;
     const enf_file_corner *cover_corners;
     const int32_t *cover_polygon;
@@ -224,7 +221,7 @@ typedef struct enf_file_view {
     const int64_t *piece_offset;
     int64_t piece_corner_count;
     const enf_file_corner *piece_corners;
-    const int32_t (*piece_face)[2];
+    const int32_t *piece_facet;
     const int32_t *piece_cover; ///< >= 0 occluded by that cover, -1 open, -2 a sealed crack
     const int64_t *seen_offset; ///< fine_count + 1
     int64_t seen_count;
@@ -265,9 +262,10 @@ typedef enum enf_world_kind { ENF_WORLD_AIR = 0, ENF_WORLD_ROCK = 1, ENF_WORLD_O
 
 /// Where a point is.
 typedef struct enf_place {
-    int32_t cell;      ///< -1: in no cell (a discarded region, or outside the hull)
-    int32_t fine_cell; ///< -1: outside the convex hull of the world, or not finite
-    int32_t region;    ///< -1 likewise
+    int32_t cell;        ///< -1: in no cell (a discarded region, or outside the hull)
+    int32_t fine_cell;   ///< -1: outside the convex hull of the world, or not finite
+    int32_t region;      ///< -1 likewise
+    int32_t tetrahedron; ///< that the point was found in: a hint for the next query; -1 likewise
     enf_world_kind kind;
 } enf_place;
 

@@ -70,7 +70,7 @@ ENF_API void enf_world_get_info(const enf_world *world, enf_world_info *info);
 /// "air", "rock" or "outside".
 ENF_API const char *enf_world_kind_name(enf_world_kind kind);
 
-/// Finds a point given in world coordinates. `hint`: the fine cell of an earlier answer nearby, or -1; it
+/// Finds a point given in world coordinates. `hint`: the tetrahedron of an earlier answer nearby, or -1; it
 /// changes the time, never the answer. Expected O(log n) without a hint, O(1) with a good one.
 ///
 /// The point is rounded to the nearest of a grid as fine as doubles of the world's size are; from there on
