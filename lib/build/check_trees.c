@@ -165,15 +165,19 @@ static bound cut_bound(const enf_checker *checker, int32_t node, int side) {
     return (bound){checker->exact.plane_class[plane], (int8_t)(side ? sign : -sign)};
 }
 
-/// Replaces the corners of a part, just above the stack, by those of its two sides.
-static bool cut_corners(walker *w, const part *whole, part half[2], int32_t t) {
+/// Replaces the corners of a part, just above the stack, by those of its two sides. Where tetrahedra share a
+/// tree a cut may miss some of them: then one side has none.
+static bool cut_corners(walker *w, const part *whole, part half[2]) {
     int32_t plane = w->checker->view->node_plane[whole->child];
     size_t first = w->corner_count, count = whole->count, met[3] = {0, 0, 0};
-    int bit;
+    int bit = CROWDED;
     if (!classify(w, w->corners + first, count, plane, &bit, met)) return false;
-    if (met[0] == 0 || met[2] == 0)
-        return enf_check_break(w->checker, "cut %d does not pass through its part of tetrahedron %d",
-                               (int)whole->child, (int)t);
+    half[0].crowded = half[1].crowded = whole->crowded;
+    if (met[0] == 0 || met[2] == 0) { // all of it is on one side
+        half[met[2] != 0].count = count;
+        w->corner_count += count;
+        return true;
+    }
     half[0].crowded = half[1].crowded = whole->crowded || bit == CROWDED;
     w->corner_count += count;
     if (!cross_edges(w, first, count, plane, bit, half[0].crowded)) return false;
@@ -212,15 +216,18 @@ static bool start_tree(walker *w, int32_t t, bool with_corners) {
     return push_part(w, (part){.child = checker->view->tetrahedron_root[t], .count = with_corners ? 4 : 0});
 }
 
-static bool push_halves(walker *w, const part *whole, bool with_corners, int32_t t) {
+static bool push_halves(walker *w, const part *whole, bool with_corners) {
     part half[2];
     for (int side = 0; side < 2; side++) {
         half[side] = (part){.child = w->checker->view->node_child[whole->child][side],
                             .depth = whole->depth + 1,
                             .last = cut_bound(w->checker, whole->child, side)};
     }
-    if (with_corners && !cut_corners(w, whole, half, t)) return false;
-    return push_part(w, half[0]) && push_part(w, half[1]);
+    if (with_corners && !cut_corners(w, whole, half)) return false;
+    for (int side = 0; side < 2; side++) {
+        if ((half[side].count > 0 || !with_corners) && !push_part(w, half[side])) return false;
+    }
+    return true;
 }
 
 /// Visits the leaves. Without corners: *plain tells whether all were plain.
@@ -236,7 +243,7 @@ static bool walk_tree(walker *w, int32_t t, bool with_corners, bool *plain) {
             w->bounds[3 + here.depth] = here.last;
         }
         if (here.child >= 0) {
-            if (!push_halves(w, &here, with_corners, t)) return false;
+            if (!push_halves(w, &here, with_corners)) return false;
         } else if (with_corners) {
             if (!leaf_is_inside(w, &here, t)) return false;
         } else {
