@@ -6,6 +6,10 @@
 #include "shim/shim.h"
 #include "shim/tetrahedra.hpp"
 
+extern "C" {
+#include "base/timer.h"
+}
+
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
@@ -60,6 +64,25 @@ enf_status take_cells(const Delaunay &delaunay, enf_tetrahedra *out, enf_error *
 }
 
 } // namespace
+
+extern "C" enf_status enf_shim_delaunay_time(const double *points, size_t point_count, double *seconds,
+                                             size_t *tetrahedra, enf_error *error) {
+    using Plain = CGAL::Delaunay_triangulation_3<Kernel>;
+    const RoundingMode restore;
+    try {
+        std::vector<Kernel::Point_3> input;
+        input.reserve(point_count);
+        for (size_t i = 0; i < point_count; ++i)
+            input.emplace_back(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
+        const double start = enf_timer_cpu();
+        const Plain delaunay(input.begin(), input.end());
+        *seconds = enf_timer_cpu() - start;
+        *tetrahedra = delaunay.number_of_finite_cells();
+        return ENF_OK;
+    } catch (...) {
+        return enf_fail(error, ENF_NO_RESOURCES, "CGAL's Delaunay failed");
+    }
+}
 
 extern "C" enf_status enf_shim_delaunay_cgal(const double *points, size_t point_count, enf_tetrahedra *out,
                                              enf_error *error) {
