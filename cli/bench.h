@@ -15,4 +15,7 @@ int cli_bench_levels(int argc, char **argv);
 /// alone.
 int cli_bench_cells(int argc, char **argv);
 
+/// Solid or air in every level of a folder, against the union of its brushes.
+int cli_bench_solid(int argc, char **argv);
+
 #endif
