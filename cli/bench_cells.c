@@ -82,7 +82,7 @@ static size_t count_triangles(const enf_soup *soup) {
 /// The recipe to colour, once, then the yardstick. The soup is borrowed, and given back as it was.
 static enf_status run_once(enf_soup *soup, int run, clocks *clocks, row *row, enf_error *error) {
     enf_build_options options = {
-        .clean = {.weld = -1, .plane_tolerance = -1}, .threads = 1, .stages = STAGES};
+        .clean = {.weld = -1, .plane_tolerance = -1}, .keep = ENF_KEEP_ALL, .threads = 1, .stages = STAGES};
     enf_build build = {.soup = *soup};
     size_t rejected = soup->rejected_count, tetrahedra;
     double started = enf_timer_cpu();
@@ -128,7 +128,7 @@ static int work(void *user, const char *path, const char *name, void *result) {
     (void)name; // the path says it
     enf_error error = {0};
     enf_status status = measure(user, path, result, &error);
-    return status ? cli_fail(&error) : ENF_OK;
+    return status ? cli_folder_fail(path, &error) : ENF_OK;
 }
 
 static void print_head(void *user) {

@@ -115,6 +115,12 @@ int cli_folder_visit(const cli_folder *folder) {
     return count < 0 ? ENF_NO_RESOURCES : ENF_BAD_INPUT;
 }
 
+int cli_folder_fail(const char *path, const enf_error *error) {
+    bool named = strncmp(error->text, path, strlen(path)) == 0;
+    fprintf(stderr, "%s%s%s\n", named ? "" : path, named ? "" : ": ", error->text);
+    return error->status;
+}
+
 static int compare_doubles(const void *left, const void *right) {
     double a = *(const double *)left, b = *(const double *)right;
     return (a > b) - (a < b);

@@ -22,6 +22,9 @@ typedef struct cli_folder {
 /// Returns the worst exit status.
 int cli_folder_visit(const cli_folder *folder);
 
+/// Prints the error of a level, with its path, to standard error; returns its exit status.
+int cli_folder_fail(const char *path, const enf_error *error);
+
 /// The middle value (the lower of two); sorts the values.
 double cli_median(double *values, size_t count);
 

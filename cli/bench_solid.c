@@ -126,7 +126,7 @@ static int work(void *user, const char *path, const char *name, void *result) {
     free(probe.solid);
     free(probe.spawns);
     cli_brushes_free(&brushes);
-    return status ? cli_fail(&error) : ENF_OK;
+    return status ? cli_folder_fail(path, &error) : ENF_OK;
 }
 
 static void print_head(void *user) {
