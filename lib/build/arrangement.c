@@ -12,7 +12,7 @@ void enf_arrangement_free(enf_arrangement *arrangement) {
     free(arrangement->polygon_plane);
     free(arrangement->polygon_flipped);
     enf_subdivision_free(&arrangement->subdivision);
-    free(arrangement->reflex);
+    free(arrangement->cell_into);
     free(arrangement->hits);
     memset(arrangement, 0, sizeof *arrangement);
 }

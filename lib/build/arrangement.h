@@ -29,8 +29,9 @@ typedef struct enf_arrangement {
     bool *polygon_flipped;    ///< the polygon's front is the plane's back
 
     enf_subdivision subdivision; ///< from split to connect; its geometry has the planes above
-    uint8_t *reflex;             ///< see join.h
-    enf_hit *hits;
+    int32_t *cell_into;          ///< from split to connect: the cell that each cell went into, or itself
+    bool plain;                  ///< cells are not joined
+    enf_hit *hits;               ///< on facets of the tetrahedra
     size_t hit_count, hit_capacity;
 } enf_arrangement;
 

@@ -7,7 +7,7 @@
 #include "build/arrangement.h"
 #include "build/complex.h"
 
-/// Takes over arrangement->subdivision and the planes, and fills the complex that enf_complex_split began.
+/// Completes the complex that enf_complex_split began; takes over the arrangement's planes.
 enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
                                enf_error *error);
 

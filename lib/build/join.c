@@ -8,6 +8,7 @@
 #include "base/exact.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static int32_t apex(const enf_tet_mesh *tets, int32_t t, int32_t facet) {
     int k = 0;
@@ -15,7 +16,10 @@ static int32_t apex(const enf_tet_mesh *tets, int32_t t, int32_t facet) {
     return tets->corners[t][k];
 }
 
-uint8_t *enf_tetrahedra_reflex(const enf_tet_mesh *tets, const double *points, const uint8_t *may) {
+/// For each facet between two tetrahedra that may be joined: a bit for each of its three edges at which the
+/// two together are not convex. Joining more to them does not mend that: no part of the facet at that edge
+/// need be tried.
+static uint8_t *find_reflex(const enf_tet_mesh *tets, const double *points, const uint8_t *may) {
     uint8_t *reflex = enf_array_zeroed((size_t)tets->facet_count, sizeof *reflex);
     for (int32_t f = 0; reflex && f < tets->facet_count; f++) {
         int32_t behind = tets->facet_sides[f][0], front = tets->facet_sides[f][1];
@@ -31,14 +35,23 @@ uint8_t *enf_tetrahedra_reflex(const enf_tet_mesh *tets, const double *points, c
     return reflex;
 }
 
-/// Has the facet a part of an edge of its tetrahedra at which they are not convex?
-static bool is_hopeless(const enf_subdivision *s, const uint8_t *reflex, int32_t f) {
-    int32_t source = s->facets[f].source, first = s->facets[f].first, h = first;
-    if (source < 0 || !reflex[source]) return false;
+/// Has the facet a part of an edge of its tetrahedra at which they are not convex? Such an edge lies on
+/// another facet of the tetrahedron that the facet's halves were made from (see add_tetrahedron_facet).
+static bool is_hopeless(const enf_subdivision *s, const enf_joiner *joiner, int32_t f) {
+    const enf_tet_mesh *tets = joiner->tets;
+    int32_t source = s->facets[f].source, first = s->facets[f].first, h = first, reflex_plane[3], count = 0;
+    if (source < 0 || !joiner->reflex[source]) return false;
+    int32_t t =
+        tets->facet_sides[source][0] >= 0 ? tets->facet_sides[source][0] : tets->facet_sides[source][1];
+    for (int i = 0; i < 3; i++) {
+        int opposite = 0;
+        if (!(joiner->reflex[source] >> i & 1)) continue;
+        while (tets->corners[t][opposite] != tets->facet_corners[source][(i + 2) % 3]) opposite++;
+        reflex_plane[count++] = tets->facets[t][opposite];
+    }
     do {
-        for (int i = 0; i < 3; i++) {
-            if (reflex[source] >> i & 1 && s->halves[h].edge_plane == s->halves[3 * source + i].edge_plane)
-                return true;
+        for (int i = 0; i < count; i++) {
+            if (s->halves[h].edge_plane == reflex_plane[i]) return true;
         }
         h = s->halves[h].next;
     } while (h != first);
@@ -80,7 +93,7 @@ static bool convex_around(enf_subdivision *s, int32_t f) {
 }
 
 /// All facets between the two cells: open, and the union convex around them?
-static bool may_join(enf_subdivision *s, const uint8_t *covered, int32_t f) {
+static bool may_join(enf_subdivision *s, int32_t f) {
     int32_t behind = s->facets[f].cell[0], front = s->facets[f].cell[1];
     if (!convex_around(s, f)) return false;
     for (int32_t g = s->cell_facet[front], next; g >= 0; g = next) {
@@ -88,21 +101,9 @@ static bool may_join(enf_subdivision *s, const uint8_t *covered, int32_t f) {
         int side = facet->cell[1] == front;
         next = facet->next[side];
         if (facet->cell[1 - side] != behind || g == f) continue;
-        if (covered[g] || !convex_around(s, g)) return false;
+        if (facet->cover >= 0 || !convex_around(s, g)) return false;
     }
     return true;
-}
-
-/// Takes a facet out of the lists at its edges.
-static void remove_facet(enf_subdivision *s, int32_t f) {
-    int32_t first = s->facets[f].first, h = first;
-    do {
-        int32_t *link = &s->edge_half[s->halves[h].edge];
-        while (*link != h) link = &s->halves[*link].radial;
-        *link = s->halves[h].radial;
-        h = s->halves[h].next;
-    } while (h != first);
-    s->facets[f].first = -1;
 }
 
 /// `front` goes into `behind`; the facets between them go.
@@ -115,7 +116,7 @@ static void join_cells(enf_subdivision *s, int32_t behind, int32_t front) {
             int side = facet->cell[1] == cell;
             next = facet->next[side];
             if (facet->cell[1 - side] == other) {
-                if (k == 1) remove_facet(s, g);
+                if (k == 1) enf_subdivision_remove(s, g);
                 continue;
             }
             facet->cell[side] = behind;
@@ -127,27 +128,42 @@ static void join_cells(enf_subdivision *s, int32_t behind, int32_t front) {
     s->cell_facet[front] = -1;
 }
 
-int32_t enf_subdivision_join(enf_subdivision *s, const uint8_t *covered, const uint8_t *may,
-                             const uint8_t *reflex, int32_t *into) {
-    int32_t joined = 0;
-    // The last cuts first: they divide the smallest cells. A second round would find one or two in a hundred
-    // more.
-    for (size_t i = s->facet_count; i-- > 0;) {
-        enf_share *facet = &s->facets[i];
-        if (facet->first < 0 || covered[i] || facet->cell[0] < 0 || facet->cell[1] < 0) continue;
-        if (!may[facet->cell[0]] || !may[facet->cell[1]]) continue;
-        if (is_hopeless(s, reflex, (int32_t)i) || !may_join(s, covered, (int32_t)i)) continue;
-        into[facet->cell[1]] = facet->cell[0];
-        join_cells(s, facet->cell[0], facet->cell[1]);
-        joined++;
+bool enf_joiner_try(enf_joiner *joiner, enf_subdivision *s, int32_t f) {
+    int32_t behind = s->facets[f].cell[0], front = s->facets[f].cell[1];
+    if (s->facets[f].cover >= 0 || behind < 0 || front < 0) return false;
+    if (is_hopeless(s, joiner, f) || !may_join(s, f)) return false;
+    joiner->into[front] = behind;
+    join_cells(s, behind, front);
+    joiner->count++;
+    return true;
+}
+
+int32_t enf_joiner_find(enf_joiner *joiner, int32_t cell) {
+    int32_t root = cell;
+    while (joiner->into[root] != root) root = joiner->into[root];
+    for (int32_t next; cell != root; cell = next) {
+        next = joiner->into[cell];
+        joiner->into[cell] = root;
     }
-    for (size_t c = 0; c < s->cell_count; c++) {
-        int32_t root = into[c];
-        while (into[root] != root) root = into[root];
-        for (int32_t at = (int32_t)c, next; at != root; at = next) {
-            next = into[at];
-            into[at] = root;
-        }
-    }
-    return joined;
+    return root;
+}
+
+bool enf_joiner_reserve(enf_joiner *joiner, size_t cell_count) {
+    if (!enf_array_reserve(joiner->into, joiner->capacity, cell_count)) return false;
+    for (; joiner->known < cell_count; joiner->known++) joiner->into[joiner->known] = (int32_t)joiner->known;
+    return true;
+}
+
+bool enf_joiner_start(enf_joiner *joiner, const enf_tet_mesh *tets, const double *points,
+                      const uint8_t *may) {
+    memset(joiner, 0, sizeof *joiner);
+    joiner->tets = tets;
+    joiner->reflex = find_reflex(tets, points, may);
+    return joiner->reflex && enf_joiner_reserve(joiner, (size_t)tets->count);
+}
+
+void enf_joiner_free(enf_joiner *joiner) {
+    free(joiner->reflex);
+    free(joiner->into);
+    memset(joiner, 0, sizeof *joiner);
 }

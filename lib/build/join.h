@@ -5,16 +5,28 @@
 
 #include "build/subdivision.h"
 
-/// For each facet of the tetrahedra between two of those that `may` be joined: a bit for each of its three
-/// edges at which the two together are not convex. Joining more to them does not mend that: no part of the
-/// facet at that edge need be tried. Null without memory (free() it).
-uint8_t *enf_tetrahedra_reflex(const enf_tet_mesh *tets, const double *points, const uint8_t *may);
+typedef struct enf_joiner {
+    const enf_tet_mesh *tets;
+    uint8_t *reflex; ///< per facet of the tetrahedra: edges at which nothing can be joined
+    int32_t *into;   ///< per cell: the cell that it went into, or itself
+    size_t known, capacity;
+    int32_t count; ///< cells that went into another
+} enf_joiner;
 
-/// Joins cells across open facets as long as the union is convex, exactly: where `covered` (a byte per facet)
-/// is 0 and `may` (a byte per cell) is set for both cells. Facets between joined cells are gone afterwards
-/// (first = -1), and so are cells that went into another (cell_facet = -1): into[c] becomes the cell that
-/// took cell c, or c itself. Returns how many went.
-int32_t enf_subdivision_join(enf_subdivision *subdivision, const uint8_t *covered, const uint8_t *may,
-                             const uint8_t *reflex, int32_t *into);
+/// `may` tells which tetrahedra may be joined to others, parts of them included. False without memory; free
+/// it in any case.
+bool enf_joiner_start(enf_joiner *joiner, const enf_tet_mesh *tets, const double *points, const uint8_t *may);
+void enf_joiner_free(enf_joiner *joiner);
+
+/// Makes room for cells below this number. False without memory.
+bool enf_joiner_reserve(enf_joiner *joiner, size_t cell_count);
+
+/// Joins the cells of a facet if nothing covers the facets between them (cover < 0) and their union is
+/// convex, exactly. The one behind stays; the facets between them and the other cell (cell_facet = -1) are
+/// gone.
+bool enf_joiner_try(enf_joiner *joiner, enf_subdivision *subdivision, int32_t facet);
+
+/// The cell that has taken this one, or itself.
+int32_t enf_joiner_find(enf_joiner *joiner, int32_t cell);
 
 #endif

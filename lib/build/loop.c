@@ -41,6 +41,17 @@ enf_loop enf_pool_loop(enf_pool *pool, int32_t plane, const enf_corner *corners,
     return loop;
 }
 
+enf_loop enf_facet_loop(const enf_subdivision *space, int32_t facet, enf_pool *pool) {
+    enf_loop loop = start_loop(pool, enf_subdivision_plane(space, facet));
+    int32_t first = space->facets[facet].first, h = first;
+    do {
+        const enf_half *half = &space->halves[h], *next = &space->halves[half->next];
+        if (next->edge_plane != half->edge_plane) add_corner(pool, &loop, next->vertex, next->edge_plane);
+        h = half->next;
+    } while (h != first);
+    return loop;
+}
+
 enf_loop enf_pool_reversed(enf_pool *pool, enf_loop loop) {
     enf_loop reversed = start_loop(pool, loop.plane);
     for (int32_t i = loop.count - 1; i >= 0; i--) {
@@ -178,7 +189,7 @@ bool enf_loops_append(enf_loops *loops, const enf_corner *corners, int32_t count
         return false;
     }
     loops->offset[0] = 0;
-    memcpy(loops->corners + loops->corner_count, corners, (size_t)count * sizeof *corners);
+    if (count > 0) memcpy(loops->corners + loops->corner_count, corners, (size_t)count * sizeof *corners);
     loops->corner_count += (size_t)count;
     loops->offset[++loops->count] = (int64_t)loops->corner_count;
     return true;

@@ -6,6 +6,7 @@
 
 #include "build/complex.h"
 #include "build/geometry.h"
+#include "build/subdivision.h"
 
 typedef struct enf_loop {
     int32_t plane;
@@ -34,6 +35,9 @@ void enf_pool_empty(enf_pool *pool); ///< drops all loops and own crossings, kee
 
 /// A loop of `count` corners, copied into the pool.
 enf_loop enf_pool_loop(enf_pool *pool, int32_t plane, const enf_corner *corners, int32_t count);
+
+/// A facet's outline, without corners on straight lines.
+enf_loop enf_facet_loop(const enf_subdivision *subdivision, int32_t facet, enf_pool *pool);
 
 /// The same corners the other way round (for a plane that faces the other way).
 enf_loop enf_pool_reversed(enf_pool *pool, enf_loop loop);

@@ -10,8 +10,7 @@
 
 #include "base/array.h"
 #include "build/flood.h"
-#include "build/join.h"
-#include "build/polygon_lines.h"
+#include "build/settle.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +18,10 @@
 typedef struct cutter {
     enf_arrangement *arrangement;
     enf_subdivision *space;
+    enf_settler settler;
     enf_polygon_lines lines;
+    enf_hit *hits; ///< on the cuts of the cell at hand
+    size_t hit_count, hit_capacity;
     int32_t *refs; ///< of the tree: nodes and cells
     enf_candidate *candidates;
     size_t candidate_capacity;
@@ -28,12 +30,11 @@ typedef struct cutter {
 } cutter;
 
 static void add_hit(cutter *c, int32_t source) {
-    enf_arrangement *arrangement = c->arrangement;
-    if (!enf_array_reserve(arrangement->hits, arrangement->hit_capacity, arrangement->hit_count + 1)) {
+    if (!enf_array_reserve(c->hits, c->hit_capacity, c->hit_count + 1)) {
         c->failed = true;
         return;
     }
-    arrangement->hits[arrangement->hit_count++] = (enf_hit){c->lines.polygon, source, c->lines.wanted};
+    c->hits[c->hit_count++] = (enf_hit){c->lines.polygon, source, c->lines.wanted};
 }
 
 // ---------------------------------------------------------------------------------------------- one cell
@@ -161,29 +162,23 @@ static void cut_tetrahedron(cutter *c, int32_t t) {
 // ---------------------------------------------------------------------------------------------- all of them
 
 /// Tetrahedra that will be cut are joined first where that makes a convex cell: a polygon then cuts one cell,
-/// not several. Returns the cell that each tetrahedron is in.
-static int32_t *join_tetrahedra(cutter *c, const enf_candidates *candidates) {
-    enf_arrangement *arrangement = c->arrangement;
-    size_t count = (size_t)arrangement->tets.count;
-    int32_t *into = enf_array_new(count, sizeof *into);
-    uint8_t *may = enf_array_new(count, sizeof *may),
-            *covered = enf_array_zeroed(c->space->facet_count, sizeof *covered);
-    if (into && may && covered) {
-        for (size_t t = 0; t < count; t++) {
-            into[t] = (int32_t)t;
-            may[t] = candidates->offset[t] < candidates->offset[t + 1];
-        }
-        for (size_t i = 0; i < arrangement->hit_count; i++) covered[arrangement->hits[i].source] = 1;
-        arrangement->reflex = enf_tetrahedra_reflex(&arrangement->tets, arrangement->geometry.points, may);
-    }
-    if (arrangement->reflex) {
-        enf_subdivision_join(c->space, covered, may, arrangement->reflex, into);
-    } else {
-        c->failed = true;
+/// not several.
+static bool join_tetrahedra(cutter *c, const enf_candidates *candidates) {
+    const enf_tet_mesh *tets = &c->arrangement->tets;
+    enf_joiner *joiner = &c->settler.joiner;
+    enf_subdivision *space = c->space;
+    uint8_t *may = enf_array_new((size_t)tets->count, sizeof *may);
+    for (int32_t t = 0; may && t < tets->count; t++)
+        may[t] = candidates->offset[t] < candidates->offset[t + 1];
+    bool good = may && enf_joiner_start(joiner, tets, space->geometry.points, may);
+    const int32_t *first = c->settler.hit_first; // facets that polygons lie on stay
+    for (int32_t f = tets->facet_count - 1; good && c->settler.join && f >= 0; f--) {
+        const enf_share *facet = &space->facets[f];
+        if (facet->first < 0 || first[f] < first[f + 1] || facet->cell[0] < 0 || facet->cell[1] < 0) continue;
+        if (may[facet->cell[0]] && may[facet->cell[1]]) enf_joiner_try(joiner, space, f);
     }
     free(may);
-    free(covered);
-    return into;
+    return good;
 }
 
 static int compare_ranks(const void *a, const void *b) {
@@ -232,36 +227,70 @@ static bool watch_half(void *user, double fraction) {
     return !half->crew->watch || half->crew->watch(half->crew->user, half->begun + half->share * fraction);
 }
 
+/// The tetrahedra of each cell as lists (free() it), or null without memory.
+static int32_t *list_members(cutter *c) {
+    int32_t count = c->arrangement->tets.count, *next = enf_array_new((size_t)count, sizeof *next);
+    for (int32_t t = 0; next && t < count; t++) next[t] = -1;
+    for (int32_t t = count - 1; next && t >= 0; t--) {
+        int32_t into = enf_joiner_find(&c->settler.joiner, t);
+        if (into == t) continue;
+        next[t] = next[into];
+        next[into] = t;
+    }
+    return next;
+}
+
+/// Cuts one cell by all its candidates, and settles what came of it.
+static void cut_by_all(cutter *c, const enf_candidates *candidates, size_t count, int32_t cell) {
+    enf_subdivision *space = c->space;
+    enf_cut_cell cut = {
+        .cell = cell, .first_cell = (int32_t)space->cell_count, .first_node = (int32_t)space->node_count};
+    space->plane = -1;
+    c->hit_count = 0;
+    for (size_t i = 0; i < count && !c->failed; i++) {
+        int32_t polygon = candidates->order[c->candidates[i].rank];
+        int32_t plane = c->arrangement->polygon_plane[polygon];
+        if (plane != space->plane) enf_subdivision_take_plane(space, plane);
+        enf_polygon_lines_take(&c->lines, c->arrangement, polygon, c->candidates[i].lines);
+        cut_tetrahedron(c, cell);
+    }
+    cut.hits = c->hits;
+    cut.hit_count = c->hit_count;
+    if (!c->failed && !enf_settler_settle(&c->settler, &cut)) c->failed = true;
+}
+
 /// All tetrahedra in turn; false if stopped.
 static bool cut_all(cutter *c, const enf_candidates *candidates, const enf_crew *crew) {
-    int32_t count = c->arrangement->tets.count;
-    int32_t *into = join_tetrahedra(c, candidates), *next = enf_array_new((size_t)count, sizeof *next);
-    if (!next) c->failed = true;
-    for (int32_t t = 0; !c->failed && t < count; t++) next[t] = -1;
-    for (int32_t t = count - 1; !c->failed && t >= 0; t--) {
-        if (into[t] == t) continue;
-        next[t] = next[into[t]];
-        next[into[t]] = t;
-    }
+    int32_t count = c->arrangement->tets.count, *next = NULL;
     bool stopped = false;
+    c->failed = !join_tetrahedra(c, candidates) || !(next = list_members(c));
     for (int32_t t = 0; t < count && !c->failed && !stopped; t++) {
         stopped = t % WATCH_EVERY == 0 && crew->watch && !crew->watch(crew->user, (double)t / (double)count);
-        if (into[t] != t) continue;
+        if (enf_joiner_find(&c->settler.joiner, t) != t) continue; // went into another
         size_t polygons = gather(c, candidates, next, t);
-        c->space->plane = -1;
-        for (size_t i = 0; i < polygons && !c->failed; i++) {
-            int32_t polygon = candidates->order[c->candidates[i].rank];
-            int32_t plane = c->arrangement->polygon_plane[polygon];
-            if (plane != c->space->plane) enf_subdivision_take_plane(c->space, plane);
-            enf_polygon_lines_take(&c->lines, c->arrangement, polygon, c->candidates[i].lines);
-            cut_tetrahedron(c, t);
-        }
+        if (!c->failed) cut_by_all(c, candidates, polygons, t);
     }
-    for (int32_t t = 0; t < count && !c->failed; t++)
-        c->space->tetrahedron_root[t] = c->space->tetrahedron_root[into[t]];
-    free(into);
+    for (int32_t t = 0; t < count && !c->failed; t++) {
+        for (int32_t k = next[t]; k >= 0 && c->space->tetrahedron_root[t] >= 0; k = next[k])
+            c->space->tetrahedron_root[k] = c->space->tetrahedron_root[t];
+    }
     free(next);
     return !stopped;
+}
+
+/// What connect needs, and what the report says.
+static void finish(enf_complex *complex, enf_arrangement *arrangement, enf_joiner *joiner) {
+    enf_subdivision *space = &arrangement->subdivision;
+    complex->tetrahedron_count = arrangement->tets.count;
+    complex->node_count = (int32_t)space->node_count;
+    complex->cells_joined = joiner->count;
+    complex->cell_count = (int32_t)space->cell_count - joiner->count;
+    for (int32_t t = 0; t < complex->tetrahedron_count; t++)
+        complex->tetrahedra_cut += space->tetrahedron_root[t] >= 0;
+    for (size_t c = 0; c < space->cell_count; c++) enf_joiner_find(joiner, (int32_t)c);
+    arrangement->cell_into = joiner->into;
+    joiner->into = NULL;
+    enf_subdivision_strip(space);
 }
 
 enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
@@ -275,17 +304,17 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     half = (half_watch){.crew = crew, .begun = 0.3, .share = 0.7};
     good = good && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets,
                                          (size_t)candidates.offset[arrangement->tets.count]);
+    good = good && enf_settler_start(&c.settler, arrangement, c.space, complex);
+    c.settler.join = !arrangement->plain;
     if (good) stopped = !cut_all(&c, &candidates, &watched);
     good = good && !c.failed;
     enf_candidates_free(&candidates);
+    if (good) finish(complex, arrangement, &c.settler.joiner);
+    enf_settler_free(&c.settler);
+    enf_polygon_lines_free(&c.lines);
     free(c.refs);
     free(c.candidates);
-    enf_polygon_lines_free(&c.lines);
+    free(c.hits);
     if (stopped) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
-    if (!good) return enf_fail_memory(error, "the fine cells");
-    complex->tetrahedron_count = arrangement->tets.count;
-    complex->cell_count = (int32_t)c.space->cell_count;
-    for (int32_t t = 0; t < complex->tetrahedron_count; t++)
-        complex->tetrahedra_cut += c.space->tetrahedron_root[t] >= 0;
-    return ENF_OK;
+    return good ? ENF_OK : enf_fail_memory(error, "the fine cells");
 }

@@ -6,7 +6,8 @@
 #include "build/arrangement.h"
 #include "build/complex.h"
 
-/// Fills arrangement->subdivision and hits. enf_complex_connect makes the fine complex of them.
+/// Fills the complex with facets, covers and pieces in which cells have numbers of arrangement->subdivision;
+/// enf_complex_connect completes it.
 enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
                              enf_error *error);
 

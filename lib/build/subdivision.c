@@ -6,13 +6,79 @@
 #include <stdlib.h>
 #include <string.h>
 
+void enf_subdivision_strip(enf_subdivision *s) {
+    void **arrays[] = {(void **)&s->halves,      (void **)&s->facets,     (void **)&s->edge_half,
+                       (void **)&s->edge_slot,   (void **)&s->cell_facet, (void **)&s->cell_parent,
+                       (void **)&s->cell_state,  (void **)&s->shares,     (void **)&s->cut_edges,
+                       (void **)&s->vertex_sign, (void **)&s->outline,    (void **)&s->outline_at,
+                       (void **)&s->touching};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        free(*arrays[i]);
+        *arrays[i] = NULL;
+    }
+}
+
 void enf_subdivision_free(enf_subdivision *s) {
-    void *arrays[] = {s->geometry.crossings, s->halves,           s->facets,      s->edge_half,
-                      s->edge_slot,          s->cell_facet,       s->cell_parent, s->node_plane,
-                      s->node_child,         s->tetrahedron_root, s->vertex_sign, s->shares,
-                      s->cut_edges,          s->outline,          s->outline_at,  s->touching};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    enf_subdivision_strip(s);
+    free(s->geometry.crossings);
+    free(s->node_plane);
+    free(s->node_child);
+    free(s->tetrahedron_root);
     memset(s, 0, sizeof *s);
+}
+
+// ---------------------------------------------------------------------------------------------- numbers
+
+static int32_t new_half(enf_subdivision *s) {
+    int32_t half = s->free_half;
+    if (half >= 0) {
+        s->free_half = s->halves[half].next;
+        return half;
+    }
+    if (!enf_array_reserve(s->halves, s->half_capacity, s->half_count + 1)) return -1;
+    return (int32_t)s->half_count++;
+}
+
+static int32_t new_facet(enf_subdivision *s) {
+    int32_t facet = s->free_facet;
+    if (facet >= 0) {
+        s->free_facet = s->facets[facet].source;
+        return facet;
+    }
+    if (!enf_array_reserve(s->facets, s->facet_capacity, s->facet_count + 1)) return -1;
+    return (int32_t)s->facet_count++;
+}
+
+static int32_t new_edge(enf_subdivision *s) {
+    int32_t edge = s->free_edge;
+    if (edge >= 0) {
+        s->free_edge = s->edge_half[edge];
+    } else {
+        if (!enf_array_reserve(s->edge_half, s->edge_capacity, s->edge_count + 1)) return -1;
+        edge = (int32_t)s->edge_count++;
+    }
+    s->edge_half[edge] = -1;
+    return edge;
+}
+
+void enf_subdivision_remove(enf_subdivision *s, int32_t f) {
+    int32_t first = s->facets[f].first, h = first, last = first;
+    do {
+        int32_t edge = s->halves[h].edge, *link = &s->edge_half[edge];
+        while (*link != h) link = &s->halves[*link].radial;
+        *link = s->halves[h].radial;
+        if (s->edge_half[edge] < 0) {
+            s->edge_half[edge] = s->free_edge;
+            s->free_edge = edge;
+        }
+        last = h;
+        h = s->halves[h].next;
+    } while (h != first);
+    s->halves[last].next = s->free_half;
+    s->free_half = first;
+    s->facets[f].first = -1;
+    s->facets[f].source = s->free_facet;
+    s->free_facet = f;
 }
 
 // ---------------------------------------------------------------------------------------------- setting out
@@ -30,7 +96,7 @@ static void add_tetrahedron_facet(enf_subdivision *s, const enf_tet_mesh *tets, 
                                                               .edge_plane = tets->facets[t][opposite],
                                                               .facet = facet};
     }
-    s->facets[facet] = (enf_share){.source = facet, .next = {-1, -1}, .first = 3 * facet};
+    s->facets[facet] = (enf_share){.source = facet, .next = {-1, -1}, .first = 3 * facet, .cover = -1};
     for (int side = 0; side < 2; side++) s->facets[facet].cell[side] = tets->facet_sides[facet][side];
 }
 
@@ -78,15 +144,17 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
     s->geometry = *geometry;
     size_t facets = (size_t)tets->facet_count, count = (size_t)tets->count;
     size_t points = (size_t)geometry->point_count;
+    s->free_half = s->free_facet = s->free_edge = -1;
     s->tetrahedron_count = tets->count;
     s->tetrahedron_planes = tets->facet_count;
     s->tetrahedron_root = enf_array_new(count, sizeof *s->tetrahedron_root);
     // Edges: as many as points and facets less tetrahedra and one (Euler), if the hull is a ball.
-    if (!s->tetrahedron_root || !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 12 * cuts + 1) ||
-        !enf_array_reserve(s->facets, s->facet_capacity, facets + 3 * cuts + 1) ||
-        !enf_array_reserve(s->edge_half, s->edge_capacity, points + facets + 3 * cuts + 1) ||
+    if (!s->tetrahedron_root || !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 1) ||
+        !enf_array_reserve(s->facets, s->facet_capacity, facets + 1) ||
+        !enf_array_reserve(s->edge_half, s->edge_capacity, points + facets + 1) ||
         !enf_array_reserve(s->cell_facet, s->cell_capacity, count + cuts + 1) ||
         !enf_array_reserve(s->cell_parent, s->parent_capacity, count + cuts + 1) ||
+        !enf_array_reserve(s->cell_state, s->state_capacity, count + cuts + 1) ||
         !enf_array_reserve(s->node_plane, s->node_capacity, cuts) ||
         !enf_array_reserve(s->node_child, s->child_capacity, cuts) ||
         !enf_array_reserve(s->vertex_sign, s->sign_capacity, points + cuts + 1) ||
@@ -100,6 +168,7 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
     s->cell_count = count;
     for (int32_t t = 0; t < tets->count; t++) {
         s->tetrahedron_root[t] = s->cell_parent[t] = -1 - t;
+        s->cell_state[t] = ENF_CELL_WAITS;
         s->cell_facet[t] = -1;
         for (int k = 0; k < 4; k++) {
             int32_t facet = tets->facets[t][k], front = tets->facet_sides[facet][1] == t;
@@ -195,12 +264,12 @@ void enf_subdivision_leave(enf_subdivision *s) {
 
 /// A new vertex on an edge: every facet there gets it.
 static bool split_edge(enf_subdivision *s, int32_t edge, int32_t from, int32_t vertex) {
-    if (!enf_array_reserve(s->edge_half, s->edge_capacity, s->edge_count + 1)) return false;
-    int32_t other = (int32_t)s->edge_count++, at = s->edge_half[edge];
-    s->edge_half[edge] = s->edge_half[other] = -1;
+    int32_t at = s->edge_half[edge], other = new_edge(s);
+    if (other < 0) return false;
+    s->edge_half[edge] = -1;
     while (at >= 0) {
-        if (!enf_array_reserve(s->halves, s->half_capacity, s->half_count + 1)) return false;
-        int32_t added = (int32_t)s->half_count++;
+        int32_t added = new_half(s);
+        if (added < 0) return false;
         enf_half *half = &s->halves[at], *second = &s->halves[added];
         int32_t following = half->radial;
         *second = *half;
@@ -228,14 +297,8 @@ static bool add_outline(enf_subdivision *s, int32_t from, int32_t to, int32_t ed
 /// A facet's outline goes from the back of the plane to its front after `into`, and back again after `out`
 /// (both are halves that start on the plane). Cuts it there; returns the part in front, -1 without memory.
 static int32_t split_facet(enf_subdivision *s, int32_t f, int32_t into, int32_t out) {
-    if (!enf_array_reserve(s->halves, s->half_capacity, s->half_count + 2) ||
-        !enf_array_reserve(s->facets, s->facet_capacity, s->facet_count + 1) ||
-        !enf_array_reserve(s->edge_half, s->edge_capacity, s->edge_count + 1)) {
-        return -1;
-    }
-    int32_t g = (int32_t)s->facet_count++, edge = (int32_t)s->edge_count++;
-    int32_t behind = (int32_t)s->half_count, front = behind + 1;
-    s->half_count += 2;
+    int32_t g = new_facet(s), edge = new_edge(s), behind = new_half(s), front = new_half(s);
+    if (g < 0 || edge < 0 || behind < 0 || front < 0) return -1;
     enf_half *halves = s->halves;
     int32_t last = into; // of the front part
     while (halves[last].next != out) {
@@ -326,26 +389,25 @@ static void straighten(enf_subdivision *s, int32_t first) {
 
 /// The facet between the two new cells.
 static bool add_cut_facet(enf_subdivision *s, int32_t node, int32_t cell, int32_t ahead) {
-    size_t count = s->outline_count;
-    if (!enf_array_reserve(s->halves, s->half_capacity, s->half_count + count) ||
-        !enf_array_reserve(s->facets, s->facet_capacity, s->facet_count + 1)) {
-        return false;
-    }
-    int32_t f = (int32_t)s->facet_count++, first = (int32_t)s->half_count;
-    s->facets[f] = (enf_share){.source = -1 - node, .first = first};
-    int32_t at = 0;
-    for (size_t i = 0; i < count; i++) {
+    int32_t f = new_facet(s), first = -1, last = -1, at = 0;
+    if (f < 0) return false;
+    for (size_t i = 0; i < s->outline_count; i++) {
         const struct enf_outline *part = &s->outline[at];
-        int32_t half = (int32_t)s->half_count++;
+        int32_t half = new_half(s);
+        if (half < 0) return false;
         s->halves[half] = (enf_half){.vertex = part->from,
-                                     .next = i + 1 < count ? half + 1 : first,
+                                     .next = first,
                                      .edge = part->edge,
                                      .radial = s->edge_half[part->edge],
                                      .edge_plane = part->edge_plane,
                                      .facet = f};
         s->edge_half[part->edge] = half;
+        if (last >= 0) s->halves[last].next = half;
+        if (first < 0) first = s->halves[half].next = half;
+        last = half;
         at = s->outline_at[part->to];
     }
+    s->facets[f] = (enf_share){.source = -1 - node, .first = first, .cover = -1};
     straighten(s, first);
     hang(s, f, 0, cell);
     hang(s, f, 1, ahead);
@@ -373,11 +435,13 @@ static int32_t add_node(enf_subdivision *s, int32_t cell, int32_t ahead) {
 
 int32_t enf_subdivision_cut(enf_subdivision *s, int32_t cell) {
     if (!enf_array_reserve(s->cell_facet, s->cell_capacity, s->cell_count + 1) ||
-        !enf_array_reserve(s->cell_parent, s->parent_capacity, s->cell_count + 1)) {
+        !enf_array_reserve(s->cell_parent, s->parent_capacity, s->cell_count + 1) ||
+        !enf_array_reserve(s->cell_state, s->state_capacity, s->cell_count + 1)) {
         return -1;
     }
     int32_t ahead = (int32_t)s->cell_count++, node = add_node(s, cell, ahead);
     if (node < 0) return -1;
+    s->cell_state[ahead] = ENF_CELL_WAITS;
     for (size_t i = 0; i < s->cut_edge_count; i++) {
         int32_t vertex = enf_subdivision_cut_vertex(s, i);
         if (vertex < 0 || !split_edge(s, s->cut_edges[i].edge, s->cut_edges[i].from, vertex)) return -1;

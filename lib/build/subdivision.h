@@ -25,7 +25,10 @@ typedef struct enf_share {
     int32_t cell[2]; ///< behind, in front; -1: outside the hull
     int32_t next[2]; ///< the next facet around that cell; -1: the last
     int32_t first;   ///< a half; -1: the facet is gone
+    int32_t cover;   ///< the owner's: see settle.c
 } enf_share;
+
+enum { ENF_CELL_WAITS, ENF_CELL_CUT, ENF_CELL_CLOSED }; ///< what becomes of a cell: see settle.h
 
 typedef struct enf_cut_edge {
     int32_t from, to;   ///< vertices, on different sides
@@ -40,13 +43,15 @@ typedef struct enf_subdivision {
     size_t half_count, half_capacity;
     enf_share *facets;
     size_t facet_count, facet_capacity;
-    int32_t *edge_half; ///< the first half at each edge
-    int32_t *edge_slot; ///< scratch: where an edge is in `cut_edges`
+    int32_t free_half, free_facet, free_edge; ///< lists of what can be used again; -1: none
+    int32_t *edge_half;                       ///< the first half at each edge
+    int32_t *edge_slot;                       ///< scratch: where an edge is in `cut_edges`
     size_t edge_count, edge_capacity, slot_capacity;
 
     int32_t *cell_facet;  ///< the first facet around each cell; -1: the cell is gone
     int32_t *cell_parent; ///< 2 * node + child, or -1 - tetrahedron
-    size_t cell_count, cell_capacity, parent_capacity;
+    uint8_t *cell_state;
+    size_t cell_count, cell_capacity, parent_capacity, state_capacity;
 
     int32_t tetrahedron_count, tetrahedron_planes; ///< planes below the latter are the tetrahedra's
     int32_t *tetrahedron_root;                     ///< as in enf_complex
@@ -82,6 +87,9 @@ bool enf_subdivision_start(enf_subdivision *subdivision, const enf_geometry *geo
                            const enf_tet_mesh *tets, size_t cuts);
 void enf_subdivision_free(enf_subdivision *subdivision);
 
+/// Frees all but the vertices and the trees of cuts.
+void enf_subdivision_strip(enf_subdivision *subdivision);
+
 /// From now on cells are held against this plane.
 void enf_subdivision_take_plane(enf_subdivision *subdivision, int32_t plane);
 
@@ -107,6 +115,10 @@ void enf_subdivision_leave(enf_subdivision *subdivision);
 /// Cuts the cell that the plane was last found to cross: a new node, the cell behind keeps its number, the
 /// one in front is new. Returns the node, or -1 without memory (the subdivision can only be freed then).
 int32_t enf_subdivision_cut(enf_subdivision *subdivision, int32_t cell);
+
+/// Takes a facet out of the lists at its edges; its number, its halves' and those of edges without facets
+/// will be used again. It stays in the lists of its cells.
+void enf_subdivision_remove(enf_subdivision *subdivision, int32_t facet);
 
 /// The plane that a facet lies on.
 static inline int32_t enf_subdivision_plane(const enf_subdivision *subdivision, int32_t facet) {

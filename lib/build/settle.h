@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Settle: what is cut on all sides will not change any more. As soon as the cells on both sides of a facet
+// have been cut, polygons are laid on it and the cells may be joined; as soon as all facets around both have
+// come so far, it goes into the fine complex, and its memory to the cells that are cut next. So the
+// half-edges of only a part of the world are there at a time, and they are looked at while they are still at
+// hand.
+#ifndef ENF_BUILD_SETTLE_H
+#define ENF_BUILD_SETTLE_H
+
+#include "build/arrangement.h"
+#include "build/complex.h"
+#include "build/join.h"
+#include "build/loop.h"
+#include "build/polygon_lines.h"
+
+/// The share of a polygon on a facet that is not in the complex yet.
+typedef struct enf_cover {
+    int32_t polygon;
+    int32_t loop; ///< in the settler's loops; -1: the whole facet
+    int32_t side; ///< as complex.cover_side
+    int32_t next; ///< the next cover of the facet; -1: the last
+} enf_cover;
+
+typedef struct enf_settler {
+    const enf_arrangement *arrangement;
+    enf_subdivision *space;
+    enf_complex *complex;
+    enf_joiner joiner;
+    bool join; ///< cells may be joined
+    enf_polygon_lines lines;
+    enf_pool pool; ///< has the space's geometry while it clips
+
+    int32_t *hit_first; ///< per facet of the tetrahedra, offsets into `hits`
+    enf_hit *hits;
+
+    enf_cover *covers;
+    size_t cover_count, cover_capacity;
+    int32_t free_cover; ///< list of those that can be used again; -1: none
+    enf_loops loops;    ///< of covers that are a part of their facet
+
+    // Scratch of one cell that was cut.
+    int32_t *inner, *next_inner; ///< its facets on its own cuts; the next one on the same cut
+    size_t inner_count, inner_capacity, next_inner_capacity;
+    int32_t *inner_of; ///< per cut: the first of them
+    size_t inner_of_capacity;
+    int32_t *outer; ///< its facets towards cells that had been cut before
+    size_t outer_count, outer_capacity;
+    int32_t *touched; ///< cells that may be closed now
+    size_t touched_count, touched_capacity;
+
+    // The complex as it grows.
+    size_t plane_capacity, cell_capacity, facet_cover_capacity, facet_piece_capacity;
+    size_t cover_polygon_capacity, cover_side_capacity, piece_facet_capacity, piece_cover_capacity;
+    enf_loop *open, *rest; ///< of the facet at hand: what no cover has taken yet
+    size_t open_count, open_capacity, rest_count, rest_capacity;
+} enf_settler;
+
+/// A cell that has just been cut, and what came of it.
+typedef struct enf_cut_cell {
+    int32_t cell, first_cell, first_node; ///< its number; new cells and nodes are from these on
+    const enf_hit *hits;                  ///< polygons on the new nodes
+    size_t hit_count;
+} enf_cut_cell;
+
+/// Facets of the tetrahedra are covered by arrangement->hits. False without memory; free it in any case.
+bool enf_settler_start(enf_settler *settler, const enf_arrangement *arrangement, enf_subdivision *space,
+                       enf_complex *complex);
+void enf_settler_free(enf_settler *settler);
+
+/// False without memory.
+bool enf_settler_settle(enf_settler *settler, const enf_cut_cell *cut);
+
+#endif
