@@ -178,10 +178,8 @@ bool enf_settler_settle(enf_settler *s, const enf_cut_cell *cut) {
         int32_t beyond = facet->cell[is_new(cut, facet->cell[0])];
         if (beyond >= 0 && !push(&s->touched, &s->touched_count, &s->touched_capacity, beyond)) return false;
     }
-    if (s->join) {
-        if (!enf_joiner_reserve(&s->joiner, space->cell_count)) return false;
-        join_all(s);
-    }
+    if (!enf_joiner_reserve(&s->joiner, space->cell_count)) return false;
+    if (s->join) join_all(s);
     for (size_t i = 0; i < s->touched_count; i++) {
         if (!close_cell(s, s->touched[i])) return false;
     }

@@ -172,11 +172,14 @@ static bool join_tetrahedra(cutter *c, const enf_candidates *candidates) {
         may[t] = candidates->offset[t] < candidates->offset[t + 1];
     bool good = may && enf_joiner_start(joiner, tets, space->geometry.points, may);
     const int32_t *first = c->settler.hit_first; // facets that polygons lie on stay
+    for (int32_t f = 0; f < tets->facet_count; f++) space->facets[f].cover = first[f] < first[f + 1] ? 0 : -1;
     for (int32_t f = tets->facet_count - 1; good && c->settler.join && f >= 0; f--) {
         const enf_share *facet = &space->facets[f];
-        if (facet->first < 0 || first[f] < first[f + 1] || facet->cell[0] < 0 || facet->cell[1] < 0) continue;
+        if (facet->first < 0 || facet->cell[0] < 0 || facet->cell[1] < 0) continue;
         if (may[facet->cell[0]] && may[facet->cell[1]]) enf_joiner_try(joiner, space, f);
     }
+    for (int32_t f = 0; f < tets->facet_count; f++)
+        space->facets[f].cover = -1; // the polygons come when all is cut
     free(may);
     return good;
 }
