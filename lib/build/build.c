@@ -9,6 +9,7 @@
 #include "build/connect.h"
 #include "build/hairline.h"
 #include "build/split.h"
+#include "build/tet_order.h"
 #include "shim/shim.h"
 
 #include <math.h>
@@ -77,6 +78,10 @@ static enf_status tetrahedralize(kitchen *k) {
     enf_status status = tetgen ? enf_shim_delaunay_tetgen(mesh->points, mesh->point_count, &made, k->error)
                                : enf_shim_delaunay_cgal(mesh->points, mesh->point_count, &made, k->error);
     if (status != ENF_OK) return status;
+    if (!enf_tetrahedra_sort(made.corners, made.count, mesh->points, mesh->point_count)) {
+        free(made.corners);
+        return enf_fail_memory(k->error, "the tetrahedra");
+    }
     status = enf_tet_mesh_pair(&k->tets, made.corners, made.count, (int32_t)mesh->point_count, k->error);
     if (status == ENF_OK) say(k, "%d tetrahedra by %s", (int)k->tets.count, tetgen ? "TetGen" : "CGAL");
     return status;
@@ -85,7 +90,7 @@ static enf_status tetrahedralize(kitchen *k) {
 static enf_status split(kitchen *k) {
     enf_complex *complex = &k->build->complex;
     k->share = 0.5;
-    enf_status status = enf_arrangement_make(&k->arrangement, &k->build->mesh, k->tets, &k->crew, k->error);
+    enf_status status = enf_arrangement_make(&k->arrangement, &k->build->mesh, k->tets, k->error);
     memset(&k->tets, 0, sizeof k->tets); // taken, or freed
     if (status != ENF_OK) return status;
     k->begun = k->share = 0.5;

@@ -237,12 +237,14 @@ static enf_status check_boxes(checker *check) {
     return ENF_OK;
 }
 
-/// Notes a reference from a root or node. Where every node is referred to at most once, a walk from a root
-/// can meet no node twice, so it ends.
-static bool note_child(const enf_file_view *view, uint8_t *referred, int32_t child) {
+/// Notes a reference from a root or node. Where a node is referred to by roots only, or by one other node
+/// only, a walk from a root can meet no node twice, so it ends.
+static bool note_child(const enf_file_view *view, uint8_t *referred, int32_t child, bool from_root) {
+    enum { BY_ROOT = 1, BY_NODE = 2 };
     if (child < 0) return -1 - child < view->fine_count;
-    if (child >= view->node_count || referred[child]) return false;
-    referred[child] = 1;
+    if (child >= view->node_count || (referred[child] && !(from_root && referred[child] == BY_ROOT)))
+        return false;
+    referred[child] = from_root ? BY_ROOT : BY_NODE;
     return true;
 }
 
@@ -252,12 +254,12 @@ static enf_status check_cut_trees(checker *check) {
     if (!referred) return enf_fail_memory(check->error, "checking the cut trees");
     enf_status status = ENF_OK;
     for (int32_t i = 0; !status && i < view->tetrahedron_count; i++) {
-        if (!note_child(view, referred, view->tetrahedron_root[i]))
+        if (!note_child(view, referred, view->tetrahedron_root[i], true))
             status = element_fails(check->error, "TETROOT", i);
     }
     for (int32_t i = 0; !status && i < view->node_count; i++) {
-        if (!note_child(view, referred, view->node_child[i][0]) ||
-            !note_child(view, referred, view->node_child[i][1]))
+        if (!note_child(view, referred, view->node_child[i][0], false) ||
+            !note_child(view, referred, view->node_child[i][1], false))
             status = element_fails(check->error, "NODCHILD", i);
     }
     free(referred);
