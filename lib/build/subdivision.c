@@ -79,6 +79,7 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
     size_t facets = (size_t)tets->facet_count, count = (size_t)tets->count;
     size_t points = (size_t)geometry->point_count;
     s->tetrahedron_count = tets->count;
+    s->tetrahedron_planes = tets->facet_count;
     s->tetrahedron_root = enf_array_new(count, sizeof *s->tetrahedron_root);
     // Edges: as many as points and facets less tetrahedra and one (Euler), if the hull is a ball.
     if (!s->tetrahedron_root || !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 12 * cuts + 1) ||
@@ -307,6 +308,22 @@ static bool sort_facet(enf_subdivision *s, int32_t f, int32_t cell, int32_t ahea
     }
 }
 
+/// Facets of joined tetrahedra may lie in one plane: parts of the outline along them are one straight line.
+static void straighten(enf_subdivision *s, int32_t first) {
+    int32_t h = first;
+    do {
+        enf_half *next = &s->halves[s->halves[h].next];
+        int32_t plane = s->halves[h].edge_plane, other = next->edge_plane;
+        if (plane != other && plane < s->tetrahedron_planes && other < s->tetrahedron_planes &&
+            enf_geometry_side(&s->geometry, s->halves[next->next].vertex, plane) == 0) {
+            // The line gets one name; it may have begun before `first`, so all of the other name go.
+            for (int32_t k = s->halves[h].next; s->halves[k].edge_plane == other; k = s->halves[k].next)
+                s->halves[k].edge_plane = plane;
+        }
+        h = s->halves[h].next;
+    } while (h != first);
+}
+
 /// The facet between the two new cells.
 static bool add_cut_facet(enf_subdivision *s, int32_t node, int32_t cell, int32_t ahead) {
     size_t count = s->outline_count;
@@ -329,6 +346,7 @@ static bool add_cut_facet(enf_subdivision *s, int32_t node, int32_t cell, int32_
         s->edge_half[part->edge] = half;
         at = s->outline_at[part->to];
     }
+    straighten(s, first);
     hang(s, f, 0, cell);
     hang(s, f, 1, ahead);
     return true;

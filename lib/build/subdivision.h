@@ -48,8 +48,8 @@ typedef struct enf_subdivision {
     int32_t *cell_parent; ///< 2 * node + child, or -1 - tetrahedron
     size_t cell_count, cell_capacity, parent_capacity;
 
-    int32_t tetrahedron_count;
-    int32_t *tetrahedron_root; ///< as in enf_complex
+    int32_t tetrahedron_count, tetrahedron_planes; ///< planes below the latter are the tetrahedra's
+    int32_t *tetrahedron_root;                     ///< as in enf_complex
     int32_t *node_plane;
     int32_t (*node_child)[2];
     size_t node_count, node_capacity, child_capacity;
