@@ -10,6 +10,8 @@
 static const cli_command benches[] = {
     {"thesis", "the worlds of the thesis: cells, splits, rooms found", cli_bench_thesis},
     {"levels", "DIR: compile every level in a folder; a row each", cli_bench_levels},
+    {"cells", "DIR: soup to coloured cells against the Delaunay triangulation alone", cli_bench_cells},
+    {"solid", "DIR: solid or air against the union of the brushes", cli_bench_solid},
 };
 
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };

@@ -11,4 +11,11 @@ int cli_bench_thesis(int argc, char **argv);
 /// Compiles every level in a folder, each in a process of its own; a row each.
 int cli_bench_levels(int argc, char **argv);
 
+/// Soup to coloured cells of every level in a folder, against the Delaunay triangulation of the same vertices
+/// alone.
+int cli_bench_cells(int argc, char **argv);
+
+/// Solid or air in every level of a folder, against the union of its brushes.
+int cli_bench_solid(int argc, char **argv);
+
 #endif

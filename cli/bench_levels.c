@@ -1,32 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef _GNU_SOURCE
-#define _GNU_SOURCE // asprintf, mkstemps
-#endif
 #include "base/timer.h"
 #include "build/check.h"
 #include "build/write.h"
 #include "cli/bench.h"
+#include "cli/bench_folder.h"
 #include "cli/cli.h"
 #include "cli/job.h"
 
-#include <dirent.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-static int is_level(const struct dirent *entry) {
-    static const char *const endings[] = {".obj", ".obj.gz", ".ply", ".ply.gz",
-                                          ".off", ".off.gz", ".stl", ".stl.gz"};
-    size_t length = strlen(entry->d_name);
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        size_t tail = strlen(endings[i]);
-        if (length > tail && strcmp(entry->d_name + length - tail, endings[i]) == 0) return 1;
-    }
-    return 0;
-}
 
 typedef struct verdict {
     bool asked, held;
@@ -53,7 +37,8 @@ static enf_status check_build(const cli_job *job, verdict *verdict, enf_error *e
     return status;
 }
 
-static void print_head(void) {
+static void print_head(void *user) {
+    (void)user;
     printf("%-20s %7s %6s %7s %8s %6s %8s %7s %6s %7s %6s %4s %7s  %s\n", "level", "s", "MB", "polys", "tets",
            "ratio", "fine", "active", "region", "cells", "portal", "leak", "spawns", "check");
 }
@@ -73,76 +58,47 @@ static void print_row(const char *name, const cli_job *job, double peak, const v
         printf("%s%s\n", verdict->asked ? "BROKEN: " : "-", verdict->first);
 }
 
+typedef struct request {
+    cli_settings settings;
+    bool check;
+} request;
+
 /// In the child: reads, compiles, writes to nowhere that stays.
-static int compile_level(const char *folder, const char *name, const cli_settings *settings, bool check) {
-    verdict verdict = {.asked = check};
+static int compile_level(void *user, const char *path, const char *name, void *row) {
+    (void)row; // the child prints
+    const request *request = user;
+    verdict verdict = {.asked = request->check};
     enf_error error = {0};
     cli_job job = {0};
     cli_texts inputs = {0};
-    char *path = NULL;
-    enf_status status =
-        asprintf(&path, "%s/%s", folder, name) < 0 ? enf_fail_memory(&error, "a path") : ENF_OK;
-    if (!status && !cli_texts_add(&inputs, path)) status = enf_fail_memory(&error, "a list");
-    if (!status) status = cli_job_prepare(&job, settings, &error);
+    enf_status status = cli_texts_add(&inputs, path) ? ENF_OK : enf_fail_memory(&error, "a list");
+    if (!status) status = cli_job_prepare(&job, &request->settings, &error);
     if (!status) status = cli_job_run(&job, &inputs, NULL, &error);
     double started = enf_timer_now();
     if (!status) status = enf_build_write(&job.build, job.options_json, "/dev/null", &error);
     job.seconds += enf_timer_now() - started;
     double peak = (double)cli_peak_bytes();
-    if (!status && check) status = check_build(&job, &verdict, &error);
+    if (!status && request->check) status = check_build(&job, &verdict, &error);
     if (!status) print_row(name, &job, peak, &verdict);
     cli_job_free(&job);
     free(inputs.items);
-    free(path);
     if (status) printf("%-20s %s\n", name, error.text);
-    if (!status && check && !verdict.held) status = ENF_CHECK_FAILED;
+    if (!status && request->check && !verdict.held) status = ENF_CHECK_FAILED;
     return cli_finish_output() ? ENF_NO_RESOURCES : (int)status;
 }
 
-/// A process for each, so that one level's memory doesn't count for the next.
-static int run_level(const char *folder, const char *name, const cli_settings *settings, bool check) {
-    fflush(stdout);
-    pid_t child = fork();
-    if (child == 0) _exit(compile_level(folder, name, settings, check));
-    int outcome = 0;
-    if (child < 0 || waitpid(child, &outcome, 0) < 0) {
-        fputs("enfilade bench: can't start a process\n", stderr);
-        return ENF_NO_RESOURCES;
-    }
-    if (WIFEXITED(outcome)) return WEXITSTATUS(outcome);
-    printf("%-20s killed by signal %d\n", name, WTERMSIG(outcome));
-    return ENF_NO_RESOURCES;
-}
-
-static int run_folder(const char *folder, const cli_settings *settings, bool check) {
-    struct dirent **entries = NULL;
-    int count = scandir(folder, &entries, is_level, alphasort), worst = ENF_OK;
-    if (count <= 0) {
-        fprintf(stderr, "%s: %s; name a folder with .obj, .ply, .off or .stl files, gzipped or not\n", folder,
-                count < 0 ? "can't be read" : "holds no levels");
-        free(entries);
-        return count < 0 ? ENF_NO_RESOURCES : ENF_BAD_INPUT;
-    }
-    print_head();
-    for (int i = 0; i < count; i++) {
-        int status = run_level(folder, entries[i]->d_name, settings, check);
-        if (status > worst) worst = status;
-        free(entries[i]);
-    }
-    free(entries);
-    return worst;
-}
-
 int cli_bench_levels(int argc, char **argv) {
-    cli_settings settings = cli_settings_default();
-    bool check = false;
+    request request = {.settings = cli_settings_default()};
+    cli_folder folder = {.user = &request, .work = compile_level, .print_head = print_head};
     cli_option options[] = {
-        {"--check", 0, CLI_FLAG, &check, NULL, "check every invariant of each result", NULL, false},
-        CLI_SETTINGS_OPTIONS(settings),
+        {"--check", 0, CLI_FLAG, &request.check, NULL, "check every invariant of each result", NULL, false},
+        {"--levels", 0, CLI_TEXT, &folder.pattern, "GLOB", "only levels whose name (less .obj.gz) matches",
+         NULL, false},
+        CLI_SETTINGS_OPTIONS(request.settings),
         {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench levels",
-        .usage = "DIR [--check] [options of compile]",
+        .usage = "DIR [--check] [--levels GLOB] [options of compile]",
         .summary =
             "Compiles every level in a folder: seconds and peak memory of read to write, sizes, ratio of\n"
             "fine cells to tetrahedra, spawn points in kept cells.",
@@ -152,8 +108,11 @@ int cli_bench_levels(int argc, char **argv) {
         .operand = "the folder"};
     cli_texts operands = {0};
     int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status < 0) status = run_folder(operands.items[0], &settings, check);
-    cli_settings_free(&settings);
+    if (status < 0) {
+        folder.path = operands.items[0];
+        status = cli_folder_visit(&folder);
+    }
+    cli_settings_free(&request.settings);
     free(operands.items);
     return status;
 }

@@ -82,12 +82,13 @@ static void warn_of_leak(const cli_job *job, const char *path) {
 }
 
 static enf_status write_world(cli_job *job, const char *path, enf_error *error) {
-    double started = enf_timer_now();
+    double started = enf_timer_now(), cpu_started = enf_timer_cpu();
     enf_status status = enf_build_write(&job->build, job->options_json, path, error);
     struct stat about;
     if (!status && stat(path, &about) == 0 && S_ISREG(about.st_mode))
         job->file_size = (uint64_t)about.st_size;
     job->write_seconds = enf_timer_now() - started;
+    job->write_cpu_seconds = enf_timer_cpu() - cpu_started;
     job->seconds += job->write_seconds;
     job->peak_bytes = cli_peak_bytes();
     return status;

@@ -128,10 +128,11 @@ static void name_inputs(const enf_soup *soup, enf_error *error) {
 }
 
 enf_status cli_job_run(cli_job *job, const cli_texts *inputs, cli_progress *progress, enf_error *error) {
-    double started = enf_timer_now();
+    double started = enf_timer_now(), cpu_started = enf_timer_cpu();
     if (progress) cli_progress_report(progress, "read", 0);
     enf_status status = read_inputs(job, inputs, error);
     job->read_seconds = enf_timer_now() - started;
+    job->read_cpu_seconds = enf_timer_cpu() - cpu_started;
     job->options.progress = progress ? cli_progress_report : NULL;
     job->options.progress_user = progress;
     if (!status) {

@@ -64,6 +64,7 @@ typedef struct cli_job {
     char *options_json; ///< what shapes the result, on one line
     enf_build build;
     double read_seconds, write_seconds, seconds;
+    double read_cpu_seconds, write_cpu_seconds;
     uint64_t peak_bytes, file_size;
 } cli_job;
 

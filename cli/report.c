@@ -87,11 +87,13 @@ static void put_regions(enf_json *json, const enf_build *build, const cli_counts
     enf_json_whole(json, "regions_ambiguous", ambiguous);
 }
 
-static void put_stage(enf_json *json, const char *name, double seconds, bool ran, const char *why) {
+static void put_stage(enf_json *json, const char *name, double seconds, double cpu_seconds, bool ran,
+                      const char *why) {
     enf_json_begin_object(json, NULL);
     json->one_line = true;
     enf_json_text(json, "name", name);
     enf_json_number(json, "seconds", seconds);
+    enf_json_number(json, "cpu_seconds", cpu_seconds);
     enf_json_bool(json, "ran", ran);
     enf_json_text(json, "why", why);
     enf_json_end_object(json);
@@ -100,12 +102,12 @@ static void put_stage(enf_json *json, const char *name, double seconds, bool ran
 
 static void put_stages(enf_json *json, const cli_job *job) {
     enf_json_begin_array(json, "stages");
-    put_stage(json, "read", job->read_seconds, true, "");
+    put_stage(json, "read", job->read_seconds, job->read_cpu_seconds, true, "");
     for (int i = 0; i < job->build.stage_count; i++) {
         const enf_stage_report *stage = &job->build.stages[i];
-        put_stage(json, stage->name, stage->seconds, stage->ran, stage->why);
+        put_stage(json, stage->name, stage->seconds, stage->cpu_seconds, stage->ran, stage->why);
     }
-    put_stage(json, "write", job->write_seconds, true, "");
+    put_stage(json, "write", job->write_seconds, job->write_cpu_seconds, true, "");
     enf_json_end_array(json);
 }
 

@@ -26,6 +26,11 @@ enf_status enf_shim_delaunay_cgal(const double *points, size_t point_count, enf_
 enf_status enf_shim_delaunay_tetgen(const double *points, size_t point_count, enf_tetrahedra *out,
                                     enf_error *error);
 
+/// What the triangulation alone costs, as a yardstick: processor seconds that CGAL takes to insert the
+/// points, spatially sorted, into nothing more than a Delaunay triangulation, and its finite tetrahedra.
+enf_status enf_shim_delaunay_time(const double *points, size_t point_count, double *seconds,
+                                  size_t *tetrahedra, enf_error *error);
+
 /// True when this build has TetGen.
 bool enf_shim_has_tetgen(void);
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <vector>
 
 namespace enf {
 
@@ -30,13 +31,22 @@ inline void rotate_corners(int32_t corners[4]) {
     std::rotate(corners + 1, std::min_element(corners + 1, corners + 4), corners + 4);
 }
 
-/// Canonical corners and lexicographic order: the same set of tetrahedra always becomes the same array.
-inline void sort_tetrahedra(enf_tetrahedra &tetrahedra) {
+/// Canonical corners and lexicographic order: the same set of tetrahedra always becomes the same array. They
+/// are dealt out by their first corner (always the smallest: a handful each), then sorted hand by hand.
+/// Corners are below `point_count`.
+inline void sort_tetrahedra(size_t point_count, enf_tetrahedra &tetrahedra) {
     using Corners = std::array<int32_t, 4>;
     static_assert(sizeof(Corners) == sizeof *tetrahedra.corners, "corners are four plain integers");
-    for (size_t i = 0; i < tetrahedra.count; ++i) rotate_corners(tetrahedra.corners[i]);
     Corners *first = reinterpret_cast<Corners *>(tetrahedra.corners);
-    std::sort(first, first + tetrahedra.count);
+    std::vector<size_t> begin(point_count + 2);
+    for (size_t i = 0; i < tetrahedra.count; ++i) {
+        rotate_corners(tetrahedra.corners[i]);
+        ++begin[static_cast<size_t>(first[i][0]) + 2];
+    }
+    for (size_t p = 2; p < begin.size(); ++p) begin[p] += begin[p - 1];
+    const std::vector<Corners> dealt(first, first + tetrahedra.count);
+    for (const Corners &corners : dealt) first[begin[static_cast<size_t>(corners[0]) + 1]++] = corners;
+    for (size_t p = 0; p < point_count; ++p) std::sort(first + begin[p], first + begin[p + 1]);
 }
 
 } // namespace enf

@@ -263,6 +263,8 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"gen four-rooms noise=1 noise=2 -o out.obj", "given twice"},
         {"bench", "the name of a table is missing"},
         {"bench marks", "there is no table 'marks'"},
+        {"bench cells", "the folder is missing"},
+        {"bench cells . --runs 0", "--runs: '0'"},
     };
     write_text("box.obj", BOX);
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) expect_failure(lines[i][0], 2, lines[i][1]);
@@ -294,6 +296,30 @@ static void help_and_version_are_data(void **state) {
         assert_string_equal(ran.err, "");
         process_free(&ran);
     }
+}
+
+/// Both tables end with a row about all levels; a level is named by a glob.
+static void benches_over_a_folder_print_a_row_per_level(void **state) {
+    (void)state;
+    write_text("rock.obj", BOX_POINTS "# spawn 3 3 3\n# brush 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    process ran = run_enfilade(NULL, "bench cells . --levels r?ck --runs 2");
+    assert_int_equal(ran.status, 0);
+    assert_non_null(strstr(ran.out, "level,triangles,tetrahedra,fine_cells,"));
+    assert_non_null(strstr(ran.out, "\nrock.obj,4,1,1,1.000,"));
+    assert_non_null(strstr(ran.out, "\nmedian (peak: largest),4,1,1,1.000,"));
+    process_free(&ran);
+    ran = run_enfilade(NULL, "bench solid . --levels rock --points 1000");
+    assert_int_equal(ran.status, 0);
+    int points, solid, spawns, wrong;
+    const char *row = strstr(ran.out, "\nall,");
+    assert_non_null(row);
+    assert_int_equal(sscanf(row, "\nall,%d,%d,%d,%d,", &points, &solid, &spawns, &wrong), 4);
+    assert_int_equal(points, 1000);
+    assert_in_range(solid, 100, 240); // a sixth
+    assert_int_equal(spawns, 1);
+    assert_int_equal(wrong, 0);
+    process_free(&ran);
+    expect_failure("bench cells . --levels nothing", 3, "holds no levels that match");
 }
 
 static void damaged_world_files_are_refused(void **state) {
@@ -394,6 +420,7 @@ int main(void) {
         cmocka_unit_test(outputs_that_cannot_be_written_are_told_and_leave_nothing),
         cmocka_unit_test(bad_options_are_refused_with_the_usage_line),
         cmocka_unit_test(help_and_version_are_data),
+        cmocka_unit_test(benches_over_a_folder_print_a_row_per_level),
         cmocka_unit_test(damaged_world_files_are_refused),
         cmocka_unit_test(locate_answers_line_by_line_until_one_is_malformed),
         cmocka_unit_test(a_killed_compile_leaves_the_old_file_or_the_new_one),

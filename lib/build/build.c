@@ -185,9 +185,10 @@ static enf_status run_stage(kitchen *k, const char *name, enf_status (*stage)(ki
     if (!tell(k, 0)) return enf_fail(k->error, ENF_NO_RESOURCES, "cancelled in stage '%s'", name);
     enf_stage_report *report = &k->build->stages[k->build->stage_count++];
     *report = (enf_stage_report){.name = name, .ran = true};
-    double start = enf_timer_now();
+    double start = enf_timer_now(), cpu_start = enf_timer_cpu();
     enf_status status = stage(k);
     report->seconds = enf_timer_now() - start;
+    report->cpu_seconds = enf_timer_cpu() - cpu_start;
     return status;
 }
 
@@ -200,19 +201,26 @@ enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf
     static const struct {
         const char *name;
         enf_status (*run)(kitchen *);
-    } recipe[] = {
-        {"clean", clean},     {"tetrahedralize", tetrahedralize},
-        {"split", split},     {"connect", connect},
-        {"colour", colour},   {"decimate", decimate},
-        {"portals", portals},
+    } recipe[ENF_STAGE_COUNT] = {
+        [ENF_STAGE_CLEAN] = {"clean", clean},
+        [ENF_STAGE_TETRAHEDRALIZE] = {"tetrahedralize", tetrahedralize},
+        [ENF_STAGE_SPLIT] = {"split", split},
+        [ENF_STAGE_CONNECT] = {"connect", connect},
+        [ENF_STAGE_COLOUR] = {"colour", colour},
+        [ENF_STAGE_DECIMATE] = {"decimate", decimate},
+        [ENF_STAGE_PORTALS] = {"portals", portals},
     };
     kitchen k = {.build = build, .options = options, .error = error};
     k.crew = (enf_crew){.threads = options->threads > 0 ? options->threads : 1, .watch = tell, .user = &k};
     double start = enf_timer_now();
     enf_status status = ENF_OK;
     build->stage_count = 0;
-    for (size_t i = 0; i < sizeof recipe / sizeof *recipe && status == ENF_OK; i++) {
-        status = run_stage(&k, recipe[i].name, recipe[i].run);
+    int wanted = options->stages > 0 ? options->stages : ENF_STAGE_COUNT;
+    for (int i = 0; i < ENF_STAGE_COUNT && status == ENF_OK; i++) {
+        if (i < wanted)
+            status = run_stage(&k, recipe[i].name, recipe[i].run);
+        else
+            skip_stage(&k, recipe[i].name, "not asked for");
     }
     if (status == ENF_OK) skip_stage(&k, "visibility", "no PVS asked for");
     enf_tet_mesh_free(&k.tets);

@@ -9,6 +9,18 @@
 
 typedef enum enf_tetrahedralizer { ENF_TETRAHEDRALIZER_CGAL, ENF_TETRAHEDRALIZER_TETGEN } enf_tetrahedralizer;
 
+/// The stages of the recipe, in order.
+typedef enum enf_stage {
+    ENF_STAGE_CLEAN,
+    ENF_STAGE_TETRAHEDRALIZE,
+    ENF_STAGE_SPLIT,
+    ENF_STAGE_CONNECT,
+    ENF_STAGE_COLOUR,
+    ENF_STAGE_DECIMATE,
+    ENF_STAGE_PORTALS,
+    ENF_STAGE_COUNT
+} enf_stage;
+
 /// Called now and then: stage name, 0..1 of that stage. Return false to cancel.
 typedef bool enf_progress(void *user, const char *stage, double fraction);
 
@@ -19,6 +31,7 @@ typedef struct enf_build_options {
     enf_stop stop;
     enf_keep keep;
     int threads;
+    int stages;             ///< run only this many, the first; 0: all
     enf_progress *progress; ///< may be null
     void *progress_user;
 } enf_build_options;
@@ -27,7 +40,7 @@ typedef struct enf_build_options {
 
 typedef struct enf_stage_report {
     const char *name;
-    double seconds;
+    double seconds, cpu_seconds; ///< by the clock; of the processor, all threads together
     bool ran;
     char why[120]; ///< why it was skipped, or what it skipped
 } enf_stage_report;
@@ -52,7 +65,8 @@ typedef struct enf_build {
 
 void enf_build_free(enf_build *build);
 
-/// Runs clean to portals over build->soup (already read). On failure the build can only be freed.
+/// Runs clean to portals, or the first stages of them, over build->soup (already read). On failure the build
+/// can only be freed.
 enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf_error *error);
 
 #endif

@@ -140,7 +140,7 @@ static bool cover_facet(finder *f, int32_t facet) {
            add_cover(f, facet, f->covers->loops.count - 1);
 }
 
-enum { WATCH_EVERY = 16384 };
+enum { WATCH_EVERY = 2048 };
 
 static bool cover_hits(finder *f, const enf_crew *crew, bool *stopped) {
     const enf_arrangement *arrangement = f->arrangement;

@@ -23,15 +23,18 @@ static int32_t side_cell(const enf_complex *complex, int32_t piece, int side) {
     return cell < 0 ? complex->cell_count : cell; // the last number stands for the outside
 }
 
-/// Opens the widest pieces first until the start is joined to the outside. Marks the pieces opened; *last is
-/// the narrowest of them. False without memory.
-static bool open_widest(const enf_complex *complex, int32_t start, bool *opened, opening *last) {
+/// Opens the widest pieces of the start's region first until the start is joined to the outside. Marks the
+/// pieces opened; *last is the narrowest of them. False without memory.
+static bool open_widest(const enf_complex *complex, const int32_t *cell_region, int32_t start, bool *opened,
+                        opening *last) {
     opening *openings = enf_array_new((size_t)complex->pieces.count, sizeof *openings);
     int32_t *parent = enf_array_new((size_t)complex->cell_count + 1, sizeof *parent);
     if (openings && parent) {
         size_t count = 0;
         for (int32_t p = 0; p < complex->pieces.count; p++) {
             if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
+            int32_t cell = side_cell(complex, p, side_cell(complex, p, 0) == complex->cell_count);
+            if (cell_region[cell] != cell_region[start]) continue; // leads from elsewhere to elsewhere
             openings[count++] = (opening){enf_complex_piece_width(complex, p), p};
         }
         qsort(openings, count, sizeof *openings, compare_openings);
@@ -142,7 +145,7 @@ bool enf_regions_trace_leak(enf_regions *regions, const enf_complex *complex, co
     int32_t start = regions->spawn_cell[regions->leak_spawn], last = -1;
     opening neck = {0};
     search search = {.opened = enf_array_zeroed((size_t)complex->pieces.count, sizeof *search.opened)};
-    bool good = search.opened && open_widest(complex, start, search.opened, &neck) &&
+    bool good = search.opened && open_widest(complex, regions->cell_region, start, search.opened, &neck) &&
                 list_open_pieces(&search, complex);
     if (good) {
         regions->leak_width = neck.width;

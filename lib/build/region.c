@@ -17,8 +17,8 @@
 #include "base/array.h"
 #include "base/sets.h"
 #include "build/leak.h"
+#include "build/region_size.h"
 #include "build/spawn.h"
-#include "build/winding.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,41 +42,81 @@ void enf_regions_free(enf_regions *regions) {
 
 // ---------------------------------------------------------------------------------------------- components
 
-/// Joins cells through open pieces at least `crack` wide, then those in the open that only cracks bound
-/// (needles), then seals the cracks that are left between different components. parent[cells] is the outside
-/// of the hull.
-static void join_cells(enf_regions *regions, enf_complex *complex, double crack, int32_t *parent,
-                       bool *walled) {
-    int32_t outside = complex->cell_count;
-    for (int32_t p = 0; p < complex->pieces.count; p++) {
-        if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
-        if (crack > 0 && enf_complex_piece_width(complex, p) < crack) continue;
-        const int32_t *cell = enf_complex_piece_cells(complex, p);
-        enf_sets_unite(parent, cell[0] < 0 ? outside : cell[0], cell[1] < 0 ? outside : cell[1]);
+/// Is the piece narrower than `crack` somewhere? Its width is at least its area divided by its diameter,
+/// which settles nearly all of them: twice that margin, and more than the rounding of either, is left to the
+/// exact formula, so it decides alone.
+static bool is_crack(const enf_complex *complex, int32_t piece, double crack) {
+    const double(*at)[3] = (const double(*)[3])complex->vertex_position;
+    int32_t count;
+    const enf_corner *corners = enf_complex_piece(complex, piece, &count);
+    const double *origin = at[corners[0].vertex];
+    double area[3] = {0, 0, 0}, before[3] = {0, 0, 0}, radius = 0; // twice the area; the radius squared
+    for (int32_t i = 1; i < count; i++) {
+        const double *p = at[corners[i].vertex];
+        double u[3] = {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
+        double square = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+        if (square > radius) radius = square;
+        area[0] += before[1] * u[2] - before[2] * u[1];
+        area[1] += before[2] * u[0] - before[0] * u[2];
+        area[2] += before[0] * u[1] - before[1] * u[0];
+        memcpy(before, u, sizeof before);
     }
-    if (!(crack > 0)) return;
+    double square = area[0] * area[0] + area[1] * area[1] + area[2] * area[2];
+    if (square > 128 * radius * (crack * crack + 0x1p-80 * radius))
+        return false; // the diameter is <= 2 radii
+    return enf_complex_piece_width(complex, piece) < crack;
+}
+
+enum { WALL = 1, TO_OUTSIDE = 2 }; ///< what a cell has: an occluded piece, an open piece of the hull
+
+/// The open pieces narrower than a crack, ascending.
+typedef struct crack_list {
+    int32_t *pieces;
+    size_t count, capacity;
+} crack_list;
+
+/// Joins cells through open pieces that are no cracks and lists the cracks. False without memory.
+static bool join_cells(const enf_complex *complex, double crack, int32_t *parent, uint8_t *has,
+                       crack_list *cracks) {
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         const int32_t *cell = enf_complex_piece_cells(complex, p);
-        for (int side = 0; side < 2; side++) {
-            bool wall = complex->piece_cover[p] != ENF_PIECE_OPEN;
-            if (wall && cell[side] >= 0) walled[enf_sets_find(parent, cell[side])] = true;
+        bool inner = cell[0] >= 0 && cell[1] >= 0;
+        if (complex->piece_cover[p] != ENF_PIECE_OPEN) {
+            for (int side = 0; side < 2; side++)
+                if (cell[side] >= 0) has[cell[side]] |= WALL;
+        } else if (inner && enf_sets_find(parent, cell[0]) == enf_sets_find(parent, cell[1])) {
+            continue; // joined already; whether this is a crack does not matter
+        } else if (crack > 0 && is_crack(complex, p, crack)) {
+            if (!enf_array_reserve(cracks->pieces, cracks->capacity, cracks->count + 1)) return false;
+            cracks->pieces[cracks->count++] = p;
+        } else if (inner) {
+            enf_sets_unite(parent, cell[0], cell[1]);
+        } else {
+            has[cell[0] < 0 ? cell[1] : cell[0]] |= TO_OUTSIDE;
         }
     }
-    walled[enf_sets_find(parent, outside)] = true;
-    for (int32_t p = 0; p < complex->pieces.count; p++) {
-        const int32_t *cell = enf_complex_piece_cells(complex, p);
-        if (complex->piece_cover[p] != ENF_PIECE_OPEN || cell[0] < 0 || cell[1] < 0) continue;
-        int32_t a = enf_sets_find(parent, cell[0]), b = enf_sets_find(parent, cell[1]);
+    return true;
+}
+
+/// Opens the cracks to components that only cracks bound (needles), then seals those that are left between
+/// different components. `joined` is over the cells and, as the last, the outside of the hull.
+static void judge_cracks(enf_regions *regions, enf_complex *complex, const crack_list *cracks,
+                         int32_t *joined, bool *walled) {
+    int32_t outside = complex->cell_count;
+    for (size_t i = 0; i < cracks->count; i++) {
+        const int32_t *cell = enf_complex_piece_cells(complex, cracks->pieces[i]);
+        if (cell[0] < 0 || cell[1] < 0) continue;
+        int32_t a = enf_sets_find(joined, cell[0]), b = enf_sets_find(joined, cell[1]);
         if (a == b || (walled[a] && walled[b])) continue;
         bool wall = walled[a] || walled[b];
-        enf_sets_unite(parent, a, b);
-        walled[enf_sets_find(parent, a)] = wall;
+        enf_sets_unite(joined, a, b);
+        walled[enf_sets_find(joined, a)] = wall;
     }
-    for (int32_t p = 0; p < complex->pieces.count; p++) {
-        if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
+    for (size_t i = 0; i < cracks->count; i++) {
+        int32_t p = cracks->pieces[i];
         const int32_t *cell = enf_complex_piece_cells(complex, p);
         int32_t a = cell[0] < 0 ? outside : cell[0], b = cell[1] < 0 ? outside : cell[1];
-        if (enf_sets_find(parent, a) == enf_sets_find(parent, b)) continue;
+        if (enf_sets_find(joined, a) == enf_sets_find(joined, b)) continue;
         double area[3];
         enf_complex_piece_area(complex, p, area);
         regions->sealed++;
@@ -85,30 +125,51 @@ static void join_cells(enf_regions *regions, enf_complex *complex, double crack,
     }
 }
 
+/// Decides which cracks are sealed, and joins cells through the others. `parent` is as join_cells leaves it.
+static bool seal_cracks(enf_regions *regions, enf_complex *complex, const crack_list *cracks, int32_t *parent,
+                        const uint8_t *has) {
+    if (cracks->count == 0) return true;
+    int32_t outside = complex->cell_count;
+    int32_t *joined = enf_array_new((size_t)outside + 1, sizeof *joined);
+    bool *walled = enf_array_zeroed((size_t)outside + 1, sizeof *walled);
+    bool good = joined && walled;
+    if (good) {
+        memcpy(joined, parent, (size_t)outside * sizeof *joined);
+        joined[outside] = outside;
+        for (int32_t c = 0; c < outside; c++)
+            if (has[c] & TO_OUTSIDE) enf_sets_unite(joined, c, outside);
+        for (int32_t c = 0; c < outside; c++)
+            if (has[c] & WALL) walled[enf_sets_find(joined, c)] = true;
+        walled[enf_sets_find(joined, outside)] = true;
+        judge_cracks(regions, complex, cracks, joined, walled);
+    }
+    for (size_t i = 0; good && i < cracks->count; i++) {
+        const int32_t *cell = enf_complex_piece_cells(complex, cracks->pieces[i]);
+        if (complex->piece_cover[cracks->pieces[i]] == ENF_PIECE_OPEN && cell[0] >= 0 && cell[1] >= 0)
+            enf_sets_unite(parent, cell[0], cell[1]);
+    }
+    free(joined);
+    free(walled);
+    return good;
+}
+
 /// Regions are the components over the pieces that are open now, numbered by their smallest cell.
 static bool colour_cells(enf_regions *regions, enf_complex *complex, double crack) {
     int32_t cells = complex->cell_count;
-    int32_t *parent = enf_array_new((size_t)cells + 1, sizeof *parent);
-    bool *walled = enf_array_zeroed((size_t)cells + 1, sizeof *walled);
-    regions->cell_region = enf_array_new((size_t)cells, sizeof *regions->cell_region);
-    bool good = parent && walled && regions->cell_region;
+    int32_t *parent = enf_array_new((size_t)cells, sizeof *parent);
+    uint8_t *has = enf_array_zeroed((size_t)cells, sizeof *has);
+    crack_list cracks = {0};
+    bool good = parent && has;
     if (good) {
-        enf_sets_start(parent, cells + 1);
-        join_cells(regions, complex, crack, parent, walled);
-        enf_sets_start(parent, cells + 1);
-        for (int32_t p = 0; p < complex->pieces.count; p++) {
-            const int32_t *cell = enf_complex_piece_cells(complex, p);
-            if (complex->piece_cover[p] == ENF_PIECE_OPEN && cell[0] >= 0 && cell[1] >= 0) {
-                enf_sets_unite(parent, cell[0], cell[1]);
-            }
-        }
-        for (int32_t c = 0; c < cells; c++) {
-            int32_t root = enf_sets_find(parent, c);
-            regions->cell_region[c] = root == c ? regions->region_count++ : regions->cell_region[root];
-        }
+        enf_sets_start(parent, cells);
+        good = join_cells(complex, crack, parent, has, &cracks) &&
+               seal_cracks(regions, complex, &cracks, parent, has);
     }
-    free(parent);
-    free(walled);
+    free(has);
+    free(cracks.pieces);
+    regions->cell_region = parent; // every link leads to a smaller cell, which has its region by then
+    for (int32_t c = 0; good && c < cells; c++)
+        regions->cell_region[c] = parent[c] == c ? regions->region_count++ : regions->cell_region[parent[c]];
     return good;
 }
 
@@ -126,53 +187,6 @@ static bool allocate(enf_regions *regions) {
     return regions->kind && regions->kept && regions->touches_outside && regions->winding &&
            regions->ambiguous && regions->volume && regions->hairline && regions->front_area &&
            regions->back_area;
-}
-
-/// Areas of fronts and backs, and whether the hull is open somewhere. `bodies` get all closed area as
-/// surface.
-static void measure_pieces(enf_regions *regions, const enf_complex *complex, enf_body_size *bodies) {
-    for (int32_t p = 0; p < complex->pieces.count; p++) {
-        const int32_t *cell = enf_complex_piece_cells(complex, p);
-        int32_t cover = complex->piece_cover[p];
-        double area[3] = {0}, size = 0;
-        if (cover != ENF_PIECE_OPEN) {
-            enf_complex_piece_area(complex, p, area);
-            size = sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
-        }
-        for (int side = 0; side < 2; side++) {
-            if (cell[side] < 0) continue;
-            int32_t region = regions->cell_region[cell[side]];
-            bodies[region].surface += size;
-            if (cover == ENF_PIECE_OPEN) {
-                if (cell[1 - side] < 0) regions->touches_outside[region] = true;
-            } else if (cover >= 0) {
-                bool front = complex->cover_side[cover] == side;
-                *(front ? &regions->front_area[region] : &regions->back_area[region]) += size;
-            }
-        }
-    }
-}
-
-static bool measure(enf_regions *regions, const enf_complex *complex, double crack) {
-    enf_body_size *bodies = enf_array_new((size_t)regions->region_count, sizeof *bodies);
-    if (!bodies) return false;
-    for (int32_t r = 0; r < regions->region_count; r++) {
-        bodies[r] =
-            (enf_body_size){.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
-    }
-    for (int32_t c = 0; c < complex->cell_count; c++) {
-        enf_complex_measure_cell(complex, c, &bodies[regions->cell_region[c]]);
-    }
-    for (int32_t r = 0; r < regions->region_count; r++) {
-        regions->volume[r] = fmax(bodies[r].volume, 0); // of hairlines, rounding may leave less than nothing
-        bodies[r].surface = 0;                          // only the closed part of the faces counts
-    }
-    measure_pieces(regions, complex, bodies);
-    for (int32_t r = 0; r < regions->region_count; r++) {
-        regions->hairline[r] = !regions->touches_outside[r] && enf_body_is_hairline(&bodies[r], crack);
-    }
-    free(bodies);
-    return true;
 }
 
 static void judge(enf_regions *regions) {
@@ -287,9 +301,7 @@ enf_status enf_regions_colour(enf_regions *regions, enf_complex *complex, const 
     memset(regions, 0, sizeof *regions);
     bool good = colour_cells(regions, complex, crack) && allocate(regions);
     if (good) {
-        good = measure(regions, complex, crack) &&
-               enf_complex_wind(complex, mesh, regions->cell_region, regions->region_count, regions->winding,
-                                regions->ambiguous);
+        good = enf_regions_measure(regions, complex, mesh, crack);
     }
     if (good) {
         judge(regions);

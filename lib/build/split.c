@@ -194,7 +194,7 @@ static int compare_ranks(const void *a, const void *b) {
 /// The candidates of the tetrahedra in a cell, each once. `next` lists them, from the one that gave the cell
 /// its number.
 static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t *next, int32_t first) {
-    size_t count = 0, kept = 0;
+    size_t count = 0, kept = 0, members = 0;
     for (int32_t t = first; t >= 0; t = next[t]) {
         size_t more = (size_t)(candidates->offset[t + 1] - candidates->offset[t]);
         if (!enf_array_reserve(c->candidates, c->candidate_capacity, count + more)) {
@@ -204,20 +204,33 @@ static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t 
         memcpy(c->candidates + count, candidates->candidates + candidates->offset[t],
                more * sizeof *c->candidates);
         count += more;
+        members++;
     }
-    if (next[first] < 0) return count;
+    if (members == 1) return count;
     qsort(c->candidates, count, sizeof *c->candidates, compare_ranks);
-    for (size_t i = 0; i < count; i++) {
-        if (kept > 0 && c->candidates[kept - 1].rank == c->candidates[i].rank) {
-            c->candidates[kept - 1].lines |= c->candidates[i].lines;
-        } else {
-            c->candidates[kept++] = c->candidates[i];
-        }
+    for (size_t i = 0, end; i < count; i = end) {
+        enf_candidate one = c->candidates[i];
+        for (end = i + 1; end < count && c->candidates[end].rank == one.rank; end++)
+            one.lines |= c->candidates[end].lines;
+        if (end - i < members)
+            one.lines = UINT32_MAX; // nothing is known of the tetrahedra that it stays out of
+        c->candidates[kept++] = one;
     }
     return kept;
 }
 
-enum { WATCH_EVERY = 4096 };
+enum { WATCH_EVERY = 512 };
+
+/// The watch sees one stage where there are two.
+typedef struct half_watch {
+    const enf_crew *crew;
+    double begun, share;
+} half_watch;
+
+static bool watch_half(void *user, double fraction) {
+    const half_watch *half = user;
+    return !half->crew->watch || half->crew->watch(half->crew->user, half->begun + half->share * fraction);
+}
 
 /// All tetrahedra in turn; false if stopped.
 static bool cut_all(cutter *c, const enf_candidates *candidates, const enf_crew *crew) {
@@ -256,10 +269,13 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     memset(complex, 0, sizeof *complex);
     cutter c = {.arrangement = arrangement, .space = &arrangement->subdivision};
     enf_candidates candidates;
-    bool stopped, good = enf_candidates_find(&candidates, arrangement, crew, &stopped);
+    half_watch half = {.crew = crew, .share = 0.3};
+    enf_crew watched = {.threads = crew->threads, .watch = watch_half, .user = &half};
+    bool stopped, good = enf_candidates_find(&candidates, arrangement, &watched, &stopped);
+    half = (half_watch){.crew = crew, .begun = 0.3, .share = 0.7};
     good = good && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets,
                                          (size_t)candidates.offset[arrangement->tets.count]);
-    if (good) stopped = !cut_all(&c, &candidates, crew);
+    if (good) stopped = !cut_all(&c, &candidates, &watched);
     good = good && !c.failed;
     enf_candidates_free(&candidates);
     free(c.refs);

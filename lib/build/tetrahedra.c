@@ -95,7 +95,7 @@ enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t c
     mesh->count = (int32_t)count;
     mesh->point_count = point_count;
     size_t slots = 16;
-    while (slots < 6 * count) slots *= 2;
+    while (slots < 3 * count) slots *= 2; // there are about twice as many facets as tetrahedra
     mesh->facet_table = enf_array_new(slots, sizeof *mesh->facet_table);
     mesh->facet_table_mask = slots - 1;
     mesh->facets = enf_array_new(count, sizeof *mesh->facets);

@@ -17,7 +17,9 @@ static int compare_sites(const void *left, const void *right) {
 }
 
 void enf_sites_sort(enf_site *sites, size_t count) {
-    qsort(sites, count, sizeof *sites, compare_sites);
+    size_t ordered = 1; // welding and flattening leave most orders as they were
+    while (ordered < count && compare_sites(&sites[ordered - 1], &sites[ordered]) <= 0) ordered++;
+    if (ordered < count) qsort(sites, count, sizeof *sites, compare_sites);
 }
 
 static bool same_place(const enf_site *a, const enf_site *b) {

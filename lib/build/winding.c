@@ -7,28 +7,66 @@
 #include "build/winding.h"
 
 #include "base/array.h"
+#include "base/hash.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/// "Winding of `low` minus winding of `high` is `difference`", with the area that says so.
-typedef struct vote {
-    int32_t low, high, difference;
-    double area;
-} vote;
+void enf_votes_free(enf_votes *votes) {
+    free(votes->votes);
+    free(votes->slots);
+    memset(votes, 0, sizeof *votes);
+}
 
-static int compare_claims(const void *a, const void *b) {
-    const vote *x = a, *y = b;
+static bool same_claim(const enf_vote *a, const enf_vote *b) {
+    return a->low == b->low && a->high == b->high && a->difference == b->difference;
+}
+
+/// Where the claim is in the table, or where it would be.
+static size_t slot_of(const enf_votes *votes, const enf_vote *vote) {
+    size_t mask = votes->slot_count - 1;
+    uint64_t hash = enf_hash_mix((uint64_t)(uint32_t)vote->low << 32 | (uint32_t)vote->high);
+    size_t slot = enf_hash_mix(hash + (uint32_t)vote->difference) & mask;
+    for (int32_t at; (at = votes->slots[slot]) >= 0; slot = (slot + 1) & mask)
+        if (same_claim(&votes->votes[at], vote)) break;
+    return slot;
+}
+
+static bool grow_slots(enf_votes *votes) {
+    size_t wanted = votes->slot_count ? 2 * votes->slot_count : 256;
+    int32_t *slots = enf_array_new(wanted, sizeof *slots);
+    if (!slots) return false;
+    memset(slots, -1, wanted * sizeof *slots);
+    free(votes->slots);
+    votes->slots = slots;
+    votes->slot_count = wanted;
+    for (size_t i = 0; i < votes->count; i++) slots[slot_of(votes, &votes->votes[i])] = (int32_t)i;
+    return true;
+}
+
+bool enf_votes_add(enf_votes *votes, int32_t behind, int32_t in_front, int32_t entered, double area) {
+    bool ordered = behind < in_front;
+    enf_vote vote = {ordered ? behind : in_front, ordered ? in_front : behind, ordered ? entered : -entered,
+                     area};
+    if (2 * (votes->count + 1) > votes->slot_count && !grow_slots(votes)) return false;
+    size_t slot = slot_of(votes, &vote);
+    if (votes->slots[slot] >= 0) {
+        votes->votes[votes->slots[slot]].area += area;
+        return true;
+    }
+    if (!enf_array_reserve(votes->votes, votes->capacity, votes->count + 1)) return false;
+    votes->slots[slot] = (int32_t)votes->count;
+    votes->votes[votes->count++] = vote;
+    return true;
+}
+
+static int compare_votes(const void *a, const void *b) {
+    const enf_vote *x = a, *y = b;
+    if (x->area != y->area) return x->area > y->area ? -1 : 1;
     if (x->low != y->low) return x->low < y->low ? -1 : 1;
     if (x->high != y->high) return x->high < y->high ? -1 : 1;
     return (x->difference > y->difference) - (x->difference < y->difference);
-}
-
-static int compare_areas(const void *a, const void *b) {
-    const vote *x = a, *y = b;
-    if (x->area != y->area) return x->area > y->area ? -1 : 1;
-    return compare_claims(a, b);
 }
 
 /// Is the point inside the convex loop, seen along the plane's longest axis?
@@ -46,15 +84,15 @@ static bool holds(const enf_complex *complex, const enf_corner *corners, int32_t
     return left || right;
 }
 
-/// Solids entered when going from the facet's front to its back through the middle of a piece.
-static int32_t solids_behind(const enf_complex *complex, const enf_mesh *mesh, int32_t facet, int32_t piece,
-                             const double area[3]) {
-    int32_t count = 0, corner_count;
+int32_t enf_complex_solids_behind(const enf_complex *complex, const enf_mesh *mesh, int32_t facet,
+                                  int32_t piece, const double area[3]) {
+    int32_t count = 0, first = complex->facet_cover[facet], end = complex->facet_cover[facet + 1];
     double centre[3];
     int axis = fabs(area[0]) > fabs(area[1]) ? (fabs(area[0]) > fabs(area[2]) ? 0 : 2)
                                              : (fabs(area[1]) > fabs(area[2]) ? 1 : 2);
-    enf_complex_piece_centre(complex, piece, centre);
-    for (int32_t c = complex->facet_cover[facet]; c < complex->facet_cover[facet + 1]; c++) {
+    if (end - first > 1) enf_complex_piece_centre(complex, piece, centre);
+    for (int32_t c = first; c < end; c++) {
+        int32_t corner_count;
         const enf_corner *corners = enf_complex_cover(complex, c, facet, &corner_count);
         if (c != complex->piece_cover[piece] && !holds(complex, corners, corner_count, centre, axis))
             continue;
@@ -62,46 +100,6 @@ static int32_t solids_behind(const enf_complex *complex, const enf_mesh *mesh, i
         count += complex->cover_side[c] == 1 ? copies : -copies;
     }
     return count;
-}
-
-/// One vote per occluded piece; votes for the same claim are added up. The outside is region number
-/// region_count.
-static bool collect_votes(const enf_complex *complex, const enf_mesh *mesh, const int32_t *cell_region,
-                          int32_t region_count, vote **votes, size_t *vote_count) {
-    size_t count = 0, capacity = 0;
-    *votes = NULL;
-    for (int32_t facet = 0; facet < complex->facet_count; facet++) {
-        for (int32_t p = complex->facet_piece[facet]; p < complex->facet_piece[facet + 1]; p++) {
-            int32_t side[2];
-            for (int k = 0; k < 2; k++) {
-                int32_t cell = complex->facet_cell[facet][k];
-                side[k] = cell < 0 ? region_count : cell_region[cell];
-            }
-            if (complex->piece_cover[p] == ENF_PIECE_SEALED) continue; // no polygon, no vote
-            bool open = complex->piece_cover[p] == ENF_PIECE_OPEN;
-            if (side[0] == side[1] || (open && side[0] != region_count && side[1] != region_count)) continue;
-            double area[3];
-            enf_complex_piece_area(complex, p, area);
-            int32_t entered = open ? 0 : solids_behind(complex, mesh, facet, p, area);
-            if (!enf_array_reserve(*votes, capacity, count + 1)) return false;
-            bool ordered = side[0] < side[1];
-            (*votes)[count++] =
-                (vote){ordered ? side[0] : side[1], ordered ? side[1] : side[0], ordered ? entered : -entered,
-                       sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2])};
-        }
-    }
-    if (count) qsort(*votes, count, sizeof **votes, compare_claims);
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        if (kept > 0 && compare_claims(&(*votes)[kept - 1], &(*votes)[i]) == 0) {
-            (*votes)[kept - 1].area += (*votes)[i].area;
-        } else {
-            (*votes)[kept++] = (*votes)[i];
-        }
-    }
-    if (kept) qsort(*votes, kept, sizeof **votes, compare_areas);
-    *vote_count = kept;
-    return true;
 }
 
 /// Union-find whose links carry differences: winding of a region minus winding of its root.
@@ -121,19 +119,16 @@ static int32_t find_root(int32_t *parent, int32_t *difference, int32_t region) {
     return root;
 }
 
-bool enf_complex_wind(const enf_complex *complex, const enf_mesh *mesh, const int32_t *cell_region,
-                      int32_t region_count, int32_t *winding, bool *ambiguous) {
-    vote *votes;
-    size_t vote_count;
+bool enf_votes_settle(enf_votes *votes, int32_t region_count, int32_t *winding, bool *ambiguous) {
     size_t nodes = (size_t)region_count + 1;
     int32_t *parent = enf_array_new(nodes, sizeof *parent),
             *difference = enf_array_zeroed(nodes, sizeof *difference);
-    bool good =
-        collect_votes(complex, mesh, cell_region, region_count, &votes, &vote_count) && parent && difference;
+    bool good = parent && difference;
+    if (good && votes->count) qsort(votes->votes, votes->count, sizeof *votes->votes, compare_votes);
     for (int32_t r = 0; good && r <= region_count; r++) parent[r] = r;
     memset(ambiguous, 0, (size_t)region_count * sizeof *ambiguous);
-    for (size_t i = 0; good && i < vote_count; i++) {
-        const vote *v = &votes[i];
+    for (size_t i = 0; good && i < votes->count; i++) {
+        const enf_vote *v = &votes->votes[i];
         int32_t low = find_root(parent, difference, v->low), high = find_root(parent, difference, v->high);
         int32_t claimed = v->difference + difference[v->high] - difference[v->low]; // of the roots
         if (low != high) {
@@ -152,7 +147,6 @@ bool enf_complex_wind(const enf_complex *complex, const enf_mesh *mesh, const in
             winding[r] = difference[r] - outside;
         }
     }
-    free(votes);
     free(parent);
     free(difference);
     return good;
