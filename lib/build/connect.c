@@ -37,7 +37,8 @@ static bool number_cells(connector *c) {
     if (!part) return false;
     for (size_t i = 0; i < cells; i++) part[i] = space->cell_parent[i] >= 0;
     for (size_t i = 0; i < cells; i++) into[i] = (int32_t)i;
-    enf_subdivision_join(space, c->covers.covered, part, c->arrangement->reflex, into);
+    c->complex->cells_joined +=
+        enf_subdivision_join(space, c->covers.covered, part, c->arrangement->reflex, into);
     free(part);
     int32_t count = 0;
     for (size_t i = 0; i < facets; i++) c->facet_number[i] = space->facets[i].first >= 0 ? count++ : -1;

@@ -24,7 +24,8 @@ typedef struct cutter {
     enf_candidate *candidates;
     size_t candidate_capacity;
     size_t ref_capacity;
-    bool failed; ///< out of memory
+    int32_t joined; ///< tetrahedra that went into others
+    bool failed;    ///< out of memory
 } cutter;
 
 static void add_hit(cutter *c, int32_t source) {
@@ -242,6 +243,7 @@ static bool cut_all(cutter *c, const enf_candidates *candidates, const enf_crew 
         if (into[t] == t) continue;
         next[t] = next[into[t]];
         next[into[t]] = t;
+        c->joined++;
     }
     bool stopped = false;
     for (int32_t t = 0; t < count && !c->failed && !stopped; t++) {
@@ -285,6 +287,7 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     if (!good) return enf_fail_memory(error, "the fine cells");
     complex->tetrahedron_count = arrangement->tets.count;
     complex->cell_count = (int32_t)c.space->cell_count;
+    complex->cells_joined = c.joined;
     for (int32_t t = 0; t < complex->tetrahedron_count; t++)
         complex->tetrahedra_cut += c.space->tetrahedron_root[t] >= 0;
     return ENF_OK;
