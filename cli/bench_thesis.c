@@ -107,10 +107,10 @@ static void print_reach(const reach *reach, int32_t rooms) {
 static void print_sizes(const char *name, const cli_job *job) {
     cli_counts counts = cli_job_count(job);
     const enf_complex *complex = &job->build.complex;
-    int32_t leaves = complex->cell_count + complex->cells_joined;
+    int32_t pieces = complex->cell_count + complex->cells_joined;
     printf("%-24s %6" PRId32 " %6" PRId32 " %+6.1f %% %6" PRId32 " %6" PRId64 " %6" PRId64 " %5" PRId32, name,
            complex->tetrahedron_count, complex->tetrahedra_cut,
-           100.0 * (leaves - complex->tetrahedron_count) / complex->tetrahedron_count, complex->cell_count,
+           100.0 * (pieces - complex->tetrahedron_count) / complex->tetrahedron_count, complex->cell_count,
            counts.fine_discarded, counts.fine_active, job->build.regions.spawn_count);
 }
 

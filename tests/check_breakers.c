@@ -230,14 +230,6 @@ static bool lose_leaf(world *w, int index) {
     return index == 0;
 }
 
-/// A cut goes along a face of its tetrahedron: nothing is left on one side.
-static bool move_cut(world *w, int index) {
-    int32_t *plane = WRITABLE(w->view.node_plane);
-    if (index >= w->view.plane_count) return false;
-    plane[0] = index;
-    return true;
-}
-
 static bool turn_cover(world *w, int index) {
     uint8_t *side = WRITABLE(w->view.cover_side);
     side[0] ^= 1;
@@ -503,7 +495,6 @@ const check_kind check_kinds[] = {
     {"split: trees", swap_children},
     {"split: trees", swap_leaves},
     {"split: trees", lose_leaf},
-    {"split: trees", move_cut},
     {"split: covers", turn_cover},
     {"split: covers", move_cover},
     {"split: polygons", move_polygon},

@@ -424,9 +424,8 @@ static void each_kind_of_bad_index_is_named(void **state) {
     expect_refusal(s, "TET", 0, 27);
     expect_refusal(s, "TET", 0, -1);
     expect_refusal(s, "TETNEXT", 4, -2);
-    expect_refusal(s, "TETROOT", 4, 0);        // a second way to the node
     expect_refusal(s, "TETROOT", 4, -51);      // no such fine cell
-    expect_refusal(s, "NODCHILD", 0, 0);       // a node that is its own child
+    expect_refusal(s, "NODCHILD", 0, 0);       // a node that is its own child, and a tree's root
     expect_refusal(s, "BOX", 24, 0);           // a walk that would not go on
     expect_refusal(s, "BOX", 0, 0x7fc00000);   // NaN
     expect_refusal(s, "POINT", 4, 0x7ff80000); // NaN
@@ -450,6 +449,18 @@ static void each_kind_of_bad_index_is_named(void **state) {
     expect_refusal(s, "REGION", 28, 3);
     expect_refusal(s, "TRIANGLE", 0, 1 << 20);
     expect_refusal(s, "MATERIAL", 0, 1000); // beyond the strings
+}
+
+static void tetrahedra_may_share_a_tree(void **state) {
+    fixture_saved *s = *state;
+    unsigned char *copy = malloc(s->size);
+    assert_non_null(copy);
+    memcpy(copy, s->bytes, s->size);
+    memset(copy + section_of(copy, "TETROOT")->offset + 4, 0, 4); // the second one's root: node 0
+    fixture_fix_checksums(copy);
+    enf_error error;
+    assert_int_equal(open_copy(copy, s->size, &error), ENF_OK);
+    free(copy);
 }
 
 static void unreadable_paths_are_told_from_bad_files(void **state) {
@@ -498,6 +509,7 @@ int main(void) {
         cmocka_unit_test(sections_that_overlap_or_stick_out_are_refused),
         cmocka_unit_test(hostile_numbers_never_crash),
         cmocka_unit_test(each_kind_of_bad_index_is_named),
+        cmocka_unit_test(tetrahedra_may_share_a_tree),
         cmocka_unit_test(unreadable_paths_are_told_from_bad_files),
         cmocka_unit_test(misaligned_memory_is_refused),
     };

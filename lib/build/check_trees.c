@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Split, how points find their cells: the part of its tetrahedron that a leaf of the tree of cuts stands for
-// lies in the cell that the leaf names.
+// lies in the cell that the leaf names. (Then each cell is all of its parts, for both tile the hull. A part
+// may be empty, or flat: tetrahedra can share a tree, and a cut need not pass through all of them.)
 //
 // Most leaves need no arithmetic: if every facet of the cell lies in a plane that bounds the leaf's part,
-// which has the cell on the same side, then the part lies in the cell. If that is so for the leaves of all
-// cells that have one leaf only, these parts also have a volume: parts and cells both tile the hull, so they
-// are equal. For any other leaf the corners of its part are worked out, cut by cut, and each is compared with
-// the cell's planes.
+// which has the cell on the same side, then the part lies in the cell. For the others the corners of the part
+// are worked out, cut by cut, and compared with the cell's planes.
 //
 // Corners and edges by double description (T. Motzkin et al., 1953): each corner knows the bounds it lies on,
 // and two corners with two bounds in common end an edge. A pair too many does no harm: it adds a point of the
@@ -17,7 +16,9 @@
 
 #include <stdlib.h>
 
-enum { CROWDED = 64 }; ///< instead of a bit: there is none free, so any two corners may end an edge
+__extension__ typedef unsigned __int128 bits;
+
+enum { CROWDED = 128 }; ///< instead of a bit: there is none free
 
 /// A half-space: a plane and the side of it that is meant.
 typedef struct bound {
@@ -27,7 +28,7 @@ typedef struct bound {
 
 typedef struct corner {
     int32_t vertex;
-    uint64_t tight; ///< bounds it lies on
+    bits tight; ///< bounds it lies on
 } corner;
 
 /// A part of a tetrahedron: behind or in front of the cut above it.
@@ -35,8 +36,9 @@ typedef struct part {
     int32_t child; ///< node or leaf
     int32_t depth; ///< cuts above it
     bound last;    ///< the cut just above it
-    bool crowded;
-    size_t count; ///< corners, the last ones on the stack
+    int dimension; ///< 3, or less if cuts only touch it
+    bool any_pair; ///< any two corners may end an edge: they do not know all their bounds
+    size_t count;  ///< corners, the last ones on the stack
 } part;
 
 typedef struct walker {
@@ -70,7 +72,6 @@ static bound facet_bound(const enf_checker *checker, int32_t facet, int32_t cell
 static bool leaf_is_plain(const walker *w, const part *leaf) {
     const enf_file_view *view = w->checker->view;
     int32_t cell = -1 - leaf->child;
-    if (w->leaves[cell] != 1) return false;
     for (int32_t i = view->fine_facet[cell]; i < view->fine_facet[cell + 1]; i++) {
         if (!is_bound(w, leaf->depth, facet_bound(w->checker, view->fine_facets[i], cell))) return false;
     }
@@ -96,37 +97,45 @@ static bool leaf_is_inside(walker *w, const part *leaf, int32_t t) {
 
 // ---------------------------------------------------------------------------------------------- parts
 
-/// Bounds with three corners or more: the others only touch the part, or miss it.
-static uint64_t bounds_in_use(const corner *corners, size_t count) {
-    uint64_t once = 0, twice = 0, thrice = 0;
-    for (size_t i = 0; i < count; i++) {
+/// Bounds that the part has a side on, and those that all of it lies on.
+static bits bounds_in_use(const part *whole, const corner *corners, bits *all) {
+    bits once = 0, twice = 0, thrice = 0;
+    *all = ~(bits)0;
+    for (size_t i = 0; i < whole->count; i++) {
         thrice |= twice & corners[i].tight;
         twice |= once & corners[i].tight;
         once |= corners[i].tight;
+        *all &= corners[i].tight;
     }
-    return thrice;
+    return (whole->dimension == 3 ? thrice : twice) | *all;
 }
 
-/// Takes a free bit for the cut and tells the sides of all corners. *bit: CROWDED if none is free.
-static bool classify(walker *w, corner *corners, size_t count, int32_t plane, int *bit, size_t met[3]) {
-    enf_check_exact *exact = &w->checker->exact;
-    uint64_t used = bounds_in_use(corners, count);
+static bool find_sides(walker *w, const corner *corners, size_t count, int32_t plane, size_t met[3]) {
     if (!enf_array_reserve(w->sides, w->side_capacity, count)) return enf_check_no_memory(w->checker);
-    *bit = 0;
-    while (*bit < CROWDED && used >> *bit & 1) ++*bit;
     for (size_t i = 0; i < count; i++) {
-        w->sides[i] = (int8_t)enf_check_side(exact, corners[i].vertex, plane);
+        w->sides[i] = (int8_t)enf_check_side(&w->checker->exact, corners[i].vertex, plane);
         met[w->sides[i] + 1]++;
-        if (*bit == CROWDED) continue;
-        corners[i].tight &= ~(UINT64_C(1) << *bit);
-        if (w->sides[i] == 0) corners[i].tight |= UINT64_C(1) << *bit;
     }
     return true;
 }
 
-static bool is_edge(const corner *a, const corner *b, bool crowded) {
-    uint64_t common = a->tight & b->tight;
-    return crowded || (common & (common - 1)) != 0;
+/// Gives a free bit to a cut that has corners on both sides: CROWDED if there is none.
+static int take_bit(const walker *w, corner *corners, size_t count, bits used) {
+    int bit = 0;
+    while (bit < CROWDED && used >> bit & 1) bit++;
+    for (size_t i = 0; i < count && bit < CROWDED; i++) {
+        corners[i].tight &= ~((bits)1 << bit);
+        if (w->sides[i] == 0) corners[i].tight |= (bits)1 << bit;
+    }
+    return bit;
+}
+
+/// An edge of a body lies on two bounds, one of a flat part on one more than all of the part, and a line is
+/// one.
+static bool is_edge(const part *whole, const corner *a, const corner *b, bits all) {
+    bits common = a->tight & b->tight;
+    if (whole->dimension == 3) return whole->any_pair || (common & (common - 1)) != 0;
+    return whole->any_pair || whole->dimension == 1 || (common & ~all) != 0;
 }
 
 static bool push_corner(walker *w, corner made) {
@@ -136,17 +145,20 @@ static bool push_corner(walker *w, corner made) {
     return true;
 }
 
-/// Appends the places where the edges of the part whose corners begin at `first` cross the cut.
-static bool cross_edges(walker *w, size_t first, size_t count, int32_t plane, int bit, bool crowded) {
-    enf_check_exact *exact = &w->checker->exact;
-    uint64_t cut = bit == CROWDED ? 0 : UINT64_C(1) << bit;
-    for (size_t i = 0; i < count; i++) {
-        for (size_t k = 0; k < count && w->sides[i] < 0; k++) {
+/// Appends the places where the edges of the part, whose corners begin at `first`, cross the cut.
+static bool cross_edges(walker *w, part *whole, size_t first, int32_t plane_class) {
+    bits all, used = bounds_in_use(whole, w->corners + first, &all);
+    int bit = take_bit(w, w->corners + first, whole->count, used);
+    whole->any_pair = whole->any_pair || bit == CROWDED;
+    for (size_t i = 0; i < whole->count; i++) {
+        for (size_t k = 0; k < whole->count && w->sides[i] < 0; k++) {
             corner a = w->corners[first + i], b = w->corners[first + k];
-            if (w->sides[k] <= 0 || !is_edge(&a, &b, crowded)) continue;
-            int32_t vertex = enf_check_cross_edge(exact, a.vertex, b.vertex, exact->plane_class[plane]);
-            if (vertex < 0) return enf_check_no_memory(w->checker);
-            if (!push_corner(w, (corner){vertex, (a.tight & b.tight) | cut})) return false;
+            if (w->sides[k] <= 0 || !is_edge(whole, &a, &b, all)) continue;
+            corner made = {enf_check_cross_edge(&w->checker->exact, a.vertex, b.vertex, plane_class),
+                           a.tight & b.tight};
+            if (bit < CROWDED) made.tight |= (bits)1 << bit;
+            if (made.vertex < 0) return enf_check_no_memory(w->checker);
+            if (!push_corner(w, made)) return false;
         }
     }
     return true;
@@ -165,22 +177,24 @@ static bound cut_bound(const enf_checker *checker, int32_t node, int side) {
     return (bound){checker->exact.plane_class[plane], (int8_t)(side ? sign : -sign)};
 }
 
-/// Replaces the corners of a part, just above the stack, by those of its two sides. Where tetrahedra share a
-/// tree a cut may miss some of them: then one side has none.
-static bool cut_corners(walker *w, const part *whole, part half[2]) {
+/// What is left of a part on one side of a cut. Of a cut that only touches it, the touching side is a face,
+/// an edge or a corner.
+static void measure_half(const part *whole, const size_t met[3], int side, part *half) {
+    bool touches = met[side ? 2 : 0] == 0 && met[side ? 0 : 2] > 0;
+    half->dimension = whole->dimension;
+    if (touches) half->dimension = met[1] > 2 ? 2 : (int)met[1] - 1;
+    half->any_pair = whole->any_pair;
+}
+
+/// Replaces the corners of a part, just above the stack, by those of its two sides.
+static bool cut_corners(walker *w, part *whole, part half[2]) {
     int32_t plane = w->checker->view->node_plane[whole->child];
     size_t first = w->corner_count, count = whole->count, met[3] = {0, 0, 0};
-    int bit = CROWDED;
-    if (!classify(w, w->corners + first, count, plane, &bit, met)) return false;
-    half[0].crowded = half[1].crowded = whole->crowded;
-    if (met[0] == 0 || met[2] == 0) { // all of it is on one side
-        half[met[2] != 0].count = count;
-        w->corner_count += count;
-        return true;
-    }
-    half[0].crowded = half[1].crowded = whole->crowded || bit == CROWDED;
+    if (!find_sides(w, w->corners + first, count, plane, met)) return false;
     w->corner_count += count;
-    if (!cross_edges(w, first, count, plane, bit, half[0].crowded)) return false;
+    if (met[0] > 0 && met[2] > 0 && !cross_edges(w, whole, first, w->checker->exact.plane_class[plane]))
+        return false;
+    for (int side = 0; side < 2; side++) measure_half(whole, met, side, &half[side]);
     size_t crossings = w->corner_count - first - count;
     for (int side = 0; side < 2; side++) { // behind the whole and the crossings, then moved down over them
         size_t start = w->corner_count;
@@ -213,10 +227,12 @@ static bool start_tree(walker *w, int32_t t, bool with_corners) {
         if (w->bounds[k].inner == 0) return enf_check_no_memory(checker);
         if (with_corners && !push_corner(w, (corner){at[k], 15u & ~(1u << k)})) return false;
     }
-    return push_part(w, (part){.child = checker->view->tetrahedron_root[t], .count = with_corners ? 4 : 0});
+    return push_part(
+        w,
+        (part){.child = checker->view->tetrahedron_root[t], .dimension = 3, .count = with_corners ? 4 : 0});
 }
 
-static bool push_halves(walker *w, const part *whole, bool with_corners) {
+static bool push_halves(walker *w, part *whole, bool with_corners) {
     part half[2];
     for (int side = 0; side < 2; side++) {
         half[side] = (part){.child = w->checker->view->node_child[whole->child][side],

@@ -95,7 +95,7 @@ typedef struct enf_complex {
 
     // Work done and work skipped, for the report.
     int32_t tetrahedra_cut; ///< tetrahedra that some polygon crosses; the others are one fine cell each
-    int32_t cells_joined;   ///< how many fewer fine cells there are than leaves
+    int32_t cells_joined;   ///< that went into others: tetrahedra before they were cut, pieces of them after
     uint64_t predicates_filter, predicates_exact; ///< decided in floating point / by exact arithmetic
 } enf_complex;
 
