@@ -326,6 +326,21 @@ static bool shares_line(const enf_geometry *geometry, const enf_crossing *crossi
     return false;
 }
 
+/// The same for the plane through a polygon's edge, where two of the crossing's planes hold the edge's ends
+/// without being defined by them: cheaper to ask than to work out the crossing.
+static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
+    const int32_t *defined = geometry->planes[plane];
+    int holding = 0;
+    if (defined[2] >= 0) return false;
+    for (int k = 0; k < 3 && holding + 3 - k >= 2; k++) {
+        enf_plane_filter room;
+        const enf_plane_filter *filter = filter_of(geometry, crossing->plane[k], &room);
+        holding += side_of_point(geometry, defined[0], crossing->plane[k], filter) == 0 &&
+                   side_of_point(geometry, defined[1], crossing->plane[k], filter) == 0;
+    }
+    return holding >= 2;
+}
+
 static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
                             const enf_plane_filter *filter) {
     if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
@@ -350,7 +365,7 @@ static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing
         geometry->decided_by_filter++; // nothing was rounded: 0 is 0
         return value > 0 ? crossing->weight_sign : value < 0 ? -crossing->weight_sign : 0;
     }
-    if (shares_line(geometry, crossing, plane)) {
+    if (shares_line(geometry, crossing, plane) || holds_edge(geometry, crossing, plane)) {
         geometry->decided_by_filter++;
         return 0;
     }
