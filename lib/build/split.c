@@ -199,8 +199,9 @@ static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t 
             c->failed = true;
             return 0;
         }
-        memcpy(c->candidates + count, candidates->candidates + candidates->offset[t],
-               more * sizeof *c->candidates);
+        if (more)
+            memcpy(c->candidates + count, candidates->candidates + candidates->offset[t],
+                   more * sizeof *c->candidates);
         count += more;
         members++;
     }
