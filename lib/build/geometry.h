@@ -82,6 +82,19 @@ int enf_geometry_dominant_axis(const enf_geometry *geometry, const int32_t point
 /// Do two planes of three points that are parallel face the same way? Exact.
 bool enf_geometry_same_way(const enf_geometry *geometry, int32_t a, int32_t b);
 
+/// The same from the filter alone: quick, for measuring, where a crossing of nearly parallel planes may be
+/// far off.
+static inline void enf_geometry_near(const enf_geometry *geometry, int32_t vertex, double position[3]) {
+    int32_t own = vertex - geometry->point_count - geometry->shared_count;
+    if (vertex < geometry->point_count) {
+        for (int i = 0; i < 3; i++) position[i] = geometry->points[3 * (size_t)vertex + (size_t)i];
+        return;
+    }
+    const enf_crossing *crossing =
+        own < 0 ? &geometry->shared[own + geometry->shared_count] : &geometry->crossings[own];
+    for (int i = 0; i < 3; i++) position[i] = crossing->at[i] / crossing->weight;
+}
+
 /// The vertex's coordinates: exact for points, rounded (a few units in the last place of the world's size)
 /// for crossings.
 void enf_geometry_position(const enf_geometry *geometry, int32_t vertex, double position[3]);

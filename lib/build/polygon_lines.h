@@ -7,7 +7,7 @@
 
 enum { ENF_LINES_FEW = 32 }; ///< edges that fit the masks below; further ones are asked for singly
 
-/// What is known of a vertex: a bit for each of the wanted edges.
+/// What is known of a vertex: a bit for each of the edges that were wanted when it was first asked about.
 typedef struct enf_line_sides {
     int32_t mark;
     int32_t plane_sign; ///< the owner's: see flood.c

@@ -74,21 +74,21 @@ static bool lines_let_in(cutter *c) {
     }
     for (size_t i = 0; i < space->touching_count; i++)
         sure |= enf_polygon_lines_at(&c->lines, geometry, space->touching[i])->inside;
-    for (size_t i = 0; i < space->cut_edge_count && sure != wanted; i++) {
+    for (size_t i = 0; i < space->cut_edge_count && wanted & ~sure; i++) {
         uint32_t from = enf_polygon_lines_at(&c->lines, geometry, space->cut_edges[i].from)->inside,
                  to = enf_polygon_lines_at(&c->lines, geometry, space->cut_edges[i].to)->inside;
         sure |= from & to;
         maybe |= from | to;
     }
     if (wanted & ~(sure | maybe)) return false;
-    for (size_t i = 0; i < space->cut_edge_count && sure != wanted; i++) {
+    for (size_t i = 0; i < space->cut_edge_count && wanted & ~sure; i++) {
         const enf_cut_edge *cut = &space->cut_edges[i];
         int32_t vertex;
         if (!(wanted & ~sure & (c->lines.known[cut->from].inside | c->lines.known[cut->to].inside))) continue;
         if (!cut_vertex(c, i, &vertex)) return false;
         sure |= enf_polygon_lines_at(&c->lines, geometry, vertex)->inside;
     }
-    if (sure != wanted) return false;
+    if (wanted & ~sure) return false;
     for (int32_t i = ENF_LINES_FEW; i < c->lines.count; i++) {
         if (!line_lets_in(c, i)) return false;
     }
@@ -211,8 +211,7 @@ static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t 
         enf_candidate one = c->candidates[i];
         for (end = i + 1; end < count && c->candidates[end].rank == one.rank; end++)
             one.lines |= c->candidates[end].lines;
-        if (end - i < members)
-            one.lines = UINT32_MAX; // nothing is known of the tetrahedra that it stays out of
+        if (end - i < members) one.lines = UINT32_MAX; // see narrow_lines
         c->candidates[kept++] = one;
     }
     return kept;
@@ -244,8 +243,22 @@ static int32_t *list_members(cutter *c) {
     return next;
 }
 
+/// Where the polygon stays out of some tetrahedra of the cell, nothing is known of its lines there: wants
+/// only those that have a corner of the cell outside.
+static void narrow_lines(cutter *c, const int32_t *next, int32_t first) {
+    uint32_t outside = 0;
+    for (int32_t t = first; t >= 0 && outside != c->lines.wanted; t = next[t]) {
+        for (int k = 0; k < 4; k++) {
+            int32_t point = c->arrangement->tets.corners[t][k];
+            outside |= enf_polygon_lines_at(&c->lines, &c->space->geometry, point)->outside;
+        }
+    }
+    c->lines.wanted = outside;
+}
+
 /// Cuts one cell by all its candidates, and settles what came of it.
-static void cut_by_all(cutter *c, const enf_candidates *candidates, size_t count, int32_t cell) {
+static void cut_by_all(cutter *c, const enf_candidates *candidates, size_t count, const int32_t *next,
+                       int32_t cell) {
     enf_subdivision *space = c->space;
     enf_cut_cell cut = {
         .cell = cell, .first_cell = (int32_t)space->cell_count, .first_node = (int32_t)space->node_count};
@@ -256,6 +269,7 @@ static void cut_by_all(cutter *c, const enf_candidates *candidates, size_t count
         int32_t plane = c->arrangement->polygon_plane[polygon];
         if (plane != space->plane) enf_subdivision_take_plane(space, plane);
         enf_polygon_lines_take(&c->lines, c->arrangement, polygon, c->candidates[i].lines);
+        if (c->candidates[i].lines == UINT32_MAX) narrow_lines(c, next, cell);
         cut_tetrahedron(c, cell);
     }
     cut.hits = c->hits;
@@ -272,7 +286,7 @@ static bool cut_all(cutter *c, const enf_candidates *candidates, const enf_crew 
         stopped = t % WATCH_EVERY == 0 && crew->watch && !crew->watch(crew->user, (double)t / (double)count);
         if (enf_joiner_find(&c->settler.joiner, t) != t) continue; // went into another
         size_t polygons = gather(c, candidates, next, t);
-        if (!c->failed) cut_by_all(c, candidates, polygons, t);
+        if (!c->failed) cut_by_all(c, candidates, polygons, next, t);
     }
     for (int32_t t = 0; t < count && !c->failed; t++) {
         for (int32_t k = next[t]; k >= 0 && c->space->tetrahedron_root[t] >= 0; k = next[k])
