@@ -9,7 +9,6 @@
 #include "base/exact.h"
 #include "base/wide.h"
 
-#include <float.h>
 #include <math.h>
 
 #define U 0x1p-53
@@ -184,80 +183,6 @@ static int determinant_sign(const exact_plane *a, const exact_plane *b, const ex
         enf_wide_add_product(&sum, &above, &below);
     }
     return sum.sign;
-}
-
-// ---------------------------------------------------------------------------------------------- second
-// filter
-
-// The same determinant in long doubles, where these have more bits than doubles (64 on x86): it decides most
-// of what lies close but not on the plane, at a fraction of the price.
-
-#define V (LDBL_EPSILON / 2)
-
-/// A plane's coefficients with bounds on their errors.
-typedef struct long_plane {
-    long double normal[3], offset, normal_error, offset_error, size;
-} long_plane;
-
-static long double largest_long(const long double v[3]) {
-    long double x = fabsl(v[0]), y = fabsl(v[1]), z = fabsl(v[2]);
-    return x > y ? (x > z ? x : z) : (y > z ? y : z);
-}
-
-static void long_plane_of(const enf_geometry *geometry, int32_t plane, long_plane *out) {
-    const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
-    int64_t u[3], v[3];
-    whole_spans(geometry, plane, u, v); // 54 bits: exact in 64
-    long double bound = 0, sum = 0, magnitude = 0, reach = 0;
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        long double one = (long double)u[j] * (long double)v[k], two = (long double)u[k] * (long double)v[j];
-        out->normal[i] = one - two;
-        bound = fmaxl(bound, fabsl(one) + fabsl(two));
-    }
-    out->size = largest_long(out->normal);
-    out->normal_error = 5 * V * bound;
-    for (int i = 0; i < 3; i++) {
-        sum += out->normal[i] * p[i];
-        magnitude += fabsl(out->normal[i] * p[i]);
-        reach += fabsl((long double)p[i]);
-    }
-    out->offset = -sum;
-    out->offset_error = 5 * V * magnitude + 1.001L * out->normal_error * reach;
-}
-
-/// Sign of the determinant of the four planes' coefficients, or 0 if it is too close to tell. By Laplace's
-/// expansion along the first plane.
-static int long_determinant_sign(const enf_geometry *geometry, const int32_t planes[3], int32_t last) {
-    long_plane f[4];
-    for (int k = 0; k < 4; k++) long_plane_of(geometry, k < 3 ? planes[k] : last, &f[k]);
-    // Pairs of rows 0 1 and 2 3: products of two minors, each with its error.
-    static const int pair[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
-                                   {1, 2, 0, 3}, {3, 1, 0, 2}, {2, 3, 0, 1}};
-    long double sum = 0, error = 0;
-    for (int i = 0; i < 6; i++) {
-        long double minors[2], errors[2];
-        for (int half = 0; half < 2; half++) {
-            const long_plane *a = &f[2 * half], *b = a + 1;
-            long double x[2], y[2], dx[2], dy[2];
-            for (int k = 0; k < 2; k++) {
-                int column = pair[i][2 * half + k];
-                x[k] = column < 3 ? a->normal[column] : a->offset;
-                y[k] = column < 3 ? b->normal[column] : b->offset;
-                dx[k] = column < 3 ? a->normal_error : a->offset_error;
-                dy[k] = column < 3 ? b->normal_error : b->offset_error;
-            }
-            long double one = x[0] * y[1], two = x[1] * y[0];
-            minors[half] = one - two;
-            errors[half] = 3 * V * (fabsl(one) + fabsl(two)) + (fabsl(x[0]) + dx[0]) * dy[1] +
-                           dx[0] * fabsl(y[1]) + (fabsl(x[1]) + dx[1]) * dy[0] + dx[1] * fabsl(y[0]);
-        }
-        long double product = minors[0] * minors[1];
-        sum += product;
-        error += 8 * V * fabsl(product) + (fabsl(minors[0]) + errors[0]) * errors[1] +
-                 errors[0] * fabsl(minors[1]);
-    }
-    return fabsl(sum) > 1.01L * error ? (sum > 0 ? 1 : -1) : 0;
 }
 
 // ---------------------------------------------------------------------------------------------- crossings
@@ -443,11 +368,6 @@ static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing
     if (shares_line(geometry, crossing, plane) || holds_edge(geometry, crossing, plane)) {
         geometry->decided_by_filter++;
         return 0;
-    }
-    int sign = long_determinant_sign(geometry, crossing->plane, plane);
-    if (sign != 0) {
-        geometry->decided_by_filter++;
-        return sign * crossing->weight_sign;
     }
     geometry->decided_exactly++;
     exact_plane exact[4];
