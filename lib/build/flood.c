@@ -83,6 +83,13 @@ typedef enum contact {
     ACROSS,  ///< it may go through
 } contact;
 
+/// A tetrahedron's corners held against the polygon; a bit each.
+typedef struct stance {
+    unsigned behind, front; ///< of its plane
+    uint32_t inside[4];     ///< of its lines, strictly; see enf_line_sides
+    uint32_t outside[4];
+} stance;
+
 static int side_of_plane(flooder *w, int32_t point) {
     int32_t *known = &w->lines.known[point].plane_sign; // plane_mark * 4 + sign + 1
     if (*known >> 2 == w->plane_mark) return (*known & 3) - 1;
@@ -91,25 +98,34 @@ static int side_of_plane(flooder *w, int32_t point) {
     return sign;
 }
 
-/// How the polygon's inside meets a tetrahedron. `sign` receives the sides of its plane on which the corners
-/// lie and `sides` (unless they are all on one) those of its lines.
-static contact meets(flooder *w, const int32_t corner[4], int sign[4], enf_line_sides sides[4]) {
-    int behind = 0, front = 0;
-    for (int k = 0; k < 4; k++) {
-        sign[k] = side_of_plane(w, corner[k]);
-        behind += sign[k] < 0;
-        front += sign[k] > 0;
-    }
-    if (behind == 4 || front == 4) return APART;
-    bool across = behind && front;
-    // Some part of the tetrahedron that is in the plane must be inside each of the polygon's lines.
+/// Does the part of a face that is in the polygon's plane have something inside each of the polygon's lines?
+/// The face has these corners: three of them, or all four for the whole tetrahedron.
+static inline bool reaches(const flooder *w, const stance *at, unsigned corners) {
+    unsigned behind = at->behind & corners, front = at->front & corners;
+    if (behind == corners || front == corners) return false;
+    unsigned in_plane = behind && front ? corners : corners & ~(behind | front);
     uint32_t inside = 0;
+    for (int k = 0; k < 4; k++) inside |= at->inside[k] & -(uint32_t)(in_plane >> k & 1);
+    return inside == w->lines.wanted;
+}
+
+/// How the polygon's inside meets a tetrahedron.
+static contact meets(flooder *w, const int32_t corner[4], stance *at) {
+    at->behind = at->front = 0;
     for (int k = 0; k < 4; k++) {
-        sides[k] = *enf_polygon_lines_at(&w->lines, &w->geometry, corner[k]);
-        if (across || sign[k] == 0) inside |= sides[k].inside;
+        int sign = side_of_plane(w, corner[k]);
+        at->behind |= (unsigned)(sign < 0) << k;
+        at->front |= (unsigned)(sign > 0) << k;
     }
-    if (inside != w->lines.wanted) return APART;
-    return across ? ACROSS : behind + front == 1 ? COVERS : TOUCHES;
+    if (at->behind == 15 || at->front == 15) return APART;
+    for (int k = 0; k < 4; k++) {
+        const enf_line_sides *sides = enf_polygon_lines_at(&w->lines, &w->geometry, corner[k]);
+        at->inside[k] = sides->inside;
+        at->outside[k] = sides->outside;
+    }
+    if (!reaches(w, at, 15)) return APART;
+    unsigned off = at->behind | at->front;
+    return at->behind && at->front ? ACROSS : (off & (off - 1)) == 0 ? COVERS : TOUCHES;
 }
 
 /// Is a facet of the tetrahedron between it and the polygon?
@@ -130,24 +146,6 @@ static bool facet_separates(const flooder *w, const int32_t corner[4]) {
     return false;
 }
 
-/// Can the polygon's inside reach through the facet opposite corner k? Some part of the facet that is in the
-/// plane must be inside each of the polygon's lines.
-static bool reaches_through(const flooder *w, const int sign[4], const enf_line_sides sides[4], int k) {
-    int behind = 0, front = 0;
-    for (int i = 1; i < 4; i++) {
-        behind += sign[(k + i) & 3] < 0;
-        front += sign[(k + i) & 3] > 0;
-    }
-    if (behind == 3 || front == 3) return false;
-    bool across = behind && front;
-    uint32_t inside = 0;
-    for (int i = 1; i < 4; i++) {
-        int at = (k + i) & 3;
-        if (across || sign[at] == 0) inside |= sides[at].inside;
-    }
-    return inside == w->lines.wanted;
-}
-
 static bool has_corner(const int32_t corner[4], int32_t point) {
     return corner[0] == point || corner[1] == point || corner[2] == point || corner[3] == point;
 }
@@ -155,23 +153,17 @@ static bool has_corner(const int32_t corner[4], int32_t point) {
 // ---------------------------------------------------------------------------------------------- one polygon
 
 static void take_tetrahedron(flooder *w, flood_block *block, const enf_tet_mesh *tets, int32_t t, contact how,
-                             const int sign[4], const enf_line_sides sides[4]) {
-    uint32_t near = 0;
-    int opposite = -1;
-    if (how != ACROSS && how != COVERS) return;
-    for (int k = 0; k < 4; k++) {
-        if (how == COVERS && sign[k] != 0) {
-            opposite = k;
-        } else {
-            near |= sides[k].outside;
-        }
-    }
+                             const stance *at) {
     if (how == ACROSS) {
+        uint32_t near = at->outside[0] | at->outside[1] | at->outside[2] | at->outside[3];
         if (!facet_separates(w, tets->corners[t])) add_found(w, block, t, near);
-        return;
+    } else if (how == COVERS) {
+        int opposite = __builtin_ctz(at->behind | at->front);
+        uint32_t near = 0;
+        for (int k = 0; k < 4; k++) near |= k == opposite ? 0 : at->outside[k];
+        const int32_t facet = tets->facets[t][opposite], *sides = tets->facet_sides[facet];
+        if (sides[0] == t || sides[0] < 0) add_hit(w, block, facet, near);
     }
-    const int32_t facet = tets->facets[t][opposite], *facet_sides = tets->facet_sides[facet];
-    if (facet_sides[0] == t || facet_sides[0] < 0) add_hit(w, block, facet, near);
 }
 
 /// From a tetrahedron at the polygon's first corner, around that corner and through all that the polygon may
@@ -185,11 +177,10 @@ static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *te
     w->stamp[w->stack[0]] = mark;
     while (depth > 0 && !w->failed) {
         int32_t t = w->stack[--depth];
-        int sign[4];
-        enf_line_sides sides[4];
+        stance at = {0};
         const place *here = &places[t];
-        contact how = meets(w, here->corner, sign, sides);
-        take_tetrahedron(w, block, tets, t, how, sign, sides);
+        contact how = meets(w, here->corner, &at);
+        take_tetrahedron(w, block, tets, t, how, &at);
         bool around = has_corner(here->corner, corner);
         if (how == APART && !around) continue;
         if (!enf_array_reserve(w->stack, w->stack_capacity, depth + 4)) {
@@ -200,7 +191,7 @@ static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *te
             int32_t next = here->next[k];
             if (next < 0 || w->stamp[next] == mark) continue;
             bool star = around && here->corner[k] != corner;
-            if (!star && !reaches_through(w, sign, sides, k)) continue;
+            if (!star && !reaches(w, &at, 15u & ~(1u << k))) continue;
             w->stamp[next] = mark;
             w->stack[depth++] = next;
         }
@@ -250,7 +241,8 @@ static void take_polygon(flooder *w, flood_block *block, const flood *all, int32
     if (plane != w->plane) {
         w->plane = plane;
         w->plane_mark++;
-        enf_geometry_make_filter(&w->geometry, plane, &w->filter);
+        enf_plane_filter room;
+        w->filter = *enf_geometry_filter(&w->geometry, plane, &room);
     }
     flood_polygon(w, block, &arrangement->tets, all->places);
 }

@@ -72,12 +72,36 @@ static void make_square_filter(const enf_geometry *geometry, int32_t plane, int 
     filter->normal_error = filter->offset_error = 0;
 }
 
+/// The plane through two points along an axis: the normal is their difference, turned.
+static void make_edge_filter(const enf_geometry *geometry, const int32_t *defined, enf_plane_filter *filter) {
+    const double *p = geometry->points + 3 * (size_t)defined[0],
+                 *q = geometry->points + 3 * (size_t)defined[1];
+    int axis = axis_of(defined[2]), j = (axis + 1) % 3, k = (axis + 2) % 3;
+    double u = q[j] - p[j], v = q[k] - p[k];
+    filter->axis = -1;
+    filter->normal[axis] = 0;
+    filter->normal[j] = v;
+    filter->normal[k] = -u;
+    double one = v * p[j], two = u * p[k], magnitude = fabs(one) + fabs(two);
+    filter->normal_size = fmax(fabs(u), fabs(v));
+    filter->normal_error = filter->normal_size < 0x1p53 ? 0 : 2 * U * filter->normal_size;
+    filter->offset = two - one;
+    filter->offset_error = 5 * U * magnitude + 1.001 * filter->normal_error * (fabs(p[j]) + fabs(p[k]));
+    filter->normal_unit = enf_points_unit((const double *const[]){p, q}, 2);
+    filter->offset_unit = filter->normal_unit * filter->normal_unit;
+    if (filter->normal_error == 0 && magnitude < 0x1p53 * filter->offset_unit) filter->offset_error = 0;
+}
+
 void enf_geometry_make_filter(const enf_geometry *geometry, int32_t plane, enf_plane_filter *filter) {
     const int32_t *defined = geometry->planes[plane];
     const double *p = geometry->points + 3 * (size_t)defined[0];
     double u[3], v[3], bound = 0;
     plane_spans(geometry, plane, u, v);
     filter->axis = square_axis(u, v);
+    if (filter->axis < 0 && defined[2] < 0) {
+        make_edge_filter(geometry, defined, filter);
+        return;
+    }
     if (filter->axis >= 0) {
         make_square_filter(geometry, plane, filter->axis, filter);
         return;
@@ -112,9 +136,8 @@ void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane) {
     enf_geometry_make_filter(geometry, plane, &geometry->filters[plane - geometry->filter_first]);
 }
 
-/// The stored filter, or one made in `room`.
-static const enf_plane_filter *filter_of(const enf_geometry *geometry, int32_t plane,
-                                         enf_plane_filter *room) {
+const enf_plane_filter *enf_geometry_filter(const enf_geometry *geometry, int32_t plane,
+                                            enf_plane_filter *room) {
     if (plane >= geometry->filter_first && (plane < geometry->filter_end || geometry->filter_end == 0))
         return &geometry->filters[plane - geometry->filter_first];
     enf_geometry_make_filter(geometry, plane, room);
@@ -201,7 +224,7 @@ static void approximate(const enf_geometry *geometry, enf_crossing *crossing) {
     enf_plane_filter room[3];
     double size[3], error[3], reach[3], off[3];
     for (int k = 0; k < 3; k++) {
-        f[k] = filter_of(geometry, crossing->plane[k], &room[k]);
+        f[k] = enf_geometry_filter(geometry, crossing->plane[k], &room[k]);
         size[k] = f[k]->normal_size + f[k]->normal_error;
         error[k] = f[k]->normal_error;
         reach[k] = fabs(f[k]->offset) + f[k]->offset_error;
@@ -334,7 +357,7 @@ static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int
     if (defined[2] >= 0) return false;
     for (int k = 0; k < 3 && holding + 3 - k >= 2; k++) {
         enf_plane_filter room;
-        const enf_plane_filter *filter = filter_of(geometry, crossing->plane[k], &room);
+        const enf_plane_filter *filter = enf_geometry_filter(geometry, crossing->plane[k], &room);
         holding += side_of_point(geometry, defined[0], crossing->plane[k], filter) == 0 &&
                    side_of_point(geometry, defined[1], crossing->plane[k], filter) == 0;
     }
@@ -384,13 +407,23 @@ int enf_geometry_side_by(enf_geometry *geometry, int32_t vertex, int32_t plane,
 }
 
 int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane) {
+    const int32_t *defined = geometry->planes[plane];
+    bool stored =
+        plane >= geometry->filter_first && (plane < geometry->filter_end || geometry->filter_end == 0);
+    if (!stored && vertex < geometry->point_count && defined[2] >= 0) { // cheaper than making a filter
+        if (vertex == defined[0] || vertex == defined[1] || vertex == defined[2]) return 0;
+        const double *at = geometry->points;
+        geometry->decided_by_filter++;
+        return enf_points_orient(at + 3 * (size_t)defined[0], at + 3 * (size_t)defined[1],
+                                 at + 3 * (size_t)defined[2], at + 3 * (size_t)vertex);
+    }
     enf_plane_filter room;
-    return enf_geometry_side_by(geometry, vertex, plane, filter_of(geometry, plane, &room));
+    return enf_geometry_side_by(geometry, vertex, plane, enf_geometry_filter(geometry, plane, &room));
 }
 
 uint64_t enf_geometry_plane_bucket(const enf_geometry *geometry, int32_t plane) {
     enf_plane_filter room;
-    const enf_plane_filter *filter = filter_of(geometry, plane, &room);
+    const enf_plane_filter *filter = enf_geometry_filter(geometry, plane, &room);
     double length = sqrt(filter->normal[0] * filter->normal[0] + filter->normal[1] * filter->normal[1] +
                          filter->normal[2] * filter->normal[2]);
     double part[4] = {filter->normal[0] / length, filter->normal[1] / length, filter->normal[2] / length,

@@ -55,6 +55,10 @@ typedef struct enf_geometry {
 /// The plane's filter, from planes[plane].
 void enf_geometry_make_filter(const enf_geometry *geometry, int32_t plane, enf_plane_filter *filter);
 
+/// The plane's filter: the stored one, or one made in `room`.
+const enf_plane_filter *enf_geometry_filter(const enf_geometry *geometry, int32_t plane,
+                                            enf_plane_filter *room);
+
 /// Fills the stored filter of a plane.
 void enf_geometry_set_plane(enf_geometry *geometry, int32_t plane);
 

@@ -189,6 +189,21 @@ static int compare_ranks(const void *a, const void *b) {
     return (x->rank > y->rank) - (x->rank < y->rank);
 }
 
+enum { INSERT_MAX = 48 }; ///< candidates that are sorted by insertion: a few runs that are in order already
+
+static void sort_candidates(enf_candidate *candidates, size_t count) {
+    if (count > INSERT_MAX) {
+        qsort(candidates, count, sizeof *candidates, compare_ranks);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        enf_candidate one = candidates[i];
+        size_t k = i;
+        for (; k > 0 && candidates[k - 1].rank > one.rank; k--) candidates[k] = candidates[k - 1];
+        candidates[k] = one;
+    }
+}
+
 /// The candidates of the tetrahedra in a cell, each once. `next` lists them, from the one that gave the cell
 /// its number.
 static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t *next, int32_t first) {
@@ -206,7 +221,7 @@ static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t 
         members++;
     }
     if (members == 1) return count;
-    qsort(c->candidates, count, sizeof *c->candidates, compare_ranks);
+    sort_candidates(c->candidates, count);
     for (size_t i = 0, end; i < count; i = end) {
         enf_candidate one = c->candidates[i];
         for (end = i + 1; end < count && c->candidates[end].rank == one.rank; end++)

@@ -190,7 +190,8 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
 void enf_subdivision_take_plane(enf_subdivision *s, int32_t plane) {
     s->plane = plane;
     s->plane_mark++;
-    enf_geometry_make_filter(&s->geometry, plane, &s->filter);
+    enf_plane_filter room;
+    s->filter = *enf_geometry_filter(&s->geometry, plane, &room);
 }
 
 static bool note_cut_edge(enf_subdivision *s, int32_t half, int32_t from, int32_t to) {
