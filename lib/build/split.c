@@ -337,6 +337,7 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     half = (half_watch){.crew = crew, .begun = 0.3, .share = 0.7};
     good = good && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets,
                                          (size_t)candidates.offset[arrangement->tets.count]);
+    good = good && enf_polygon_lines_reserve(&c.lines, arrangement->mesh->point_count);
     good = good && enf_settler_start(&c.settler, arrangement, c.space, complex);
     c.settler.join = !arrangement->plain;
     if (good) stopped = !cut_all(&c, &candidates, &watched);
