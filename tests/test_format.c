@@ -141,10 +141,10 @@ static void neighbours_share_the_face_between_them(void **state) {
 
 static void portals_face_the_cell_they_lead_from(void **state) {
     (void)state;
-    const enf_frame frames[] = {{0.25, {0, 1, 2}, {1, 1, 1}, 1},
-                                {2, {1, 2, 0}, {-1, 1, -1}, 1},
-                                {1, {0, 1, 2}, {1, -1, 1}, -1},
-                                {1, {1, 0, 2}, {1, 1, 1}, -1}};
+    const enf_frame frames[] = {{0.25, {0, 1, 2}, {1, 1, 1}, 1, false, {{0}}},
+                                {2, {1, 2, 0}, {-1, 1, -1}, 1, false, {{0}}},
+                                {1, {0, 1, 2}, {1, -1, 1}, -1, false, {{0}}},
+                                {1, {1, 0, 2}, {1, 1, 1}, -1, false, {{0}}}};
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         fixture f;
         enf_image image;

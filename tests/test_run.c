@@ -100,10 +100,10 @@ static void check_point(const opened *o, const int64_t at[3], int32_t hint) {
     assert_int_equal(place.kind, expected < 0 ? ENF_WORLD_OUTSIDE : (int)build->regions.kind[place.region]);
 }
 
-static const enf_frame frames[] = {{0.25, {0, 1, 2}, {1, 1, 1}, 1},
-                                   {0x1p-40, {1, 2, 0}, {-1, 1, -1}, 1},
-                                   {0x1p60, {2, 1, 0}, {1, 1, 1}, -1},
-                                   {1, {0, 1, 2}, {1, -1, 1}, -1}};
+static const enf_frame frames[] = {{0.25, {0, 1, 2}, {1, 1, 1}, 1, false, {{0}}},
+                                   {0x1p-40, {1, 2, 0}, {-1, 1, -1}, 1}
+                                   {0x1p60, {2, 1, 0}, {1, 1, 1}, -1, false, {{0}}},
+                                   {1, {0, 1, 2}, {1, -1, 1}, -1, false, {{0}}}};
 
 static void random_points_are_found_where_they_are(void **state) {
     (void)state;
@@ -150,7 +150,7 @@ static void vertices_and_centres_are_found_where_they_are(void **state) {
 /// outside.
 static void rounded_face_centres_are_never_outside(void **state) {
     (void)state;
-    const enf_frame frame = {0x1p-60, {1, 0, 2}, {1, 1, -1}, 1};
+    const enf_frame frame = {0x1p-60, {1, 0, 2}, {1, 1, -1}, 1, false, {{0}}};
     opened o = open_fixture(4, &frame);
     const enf_file_view *file = enf_world_file(o.world);
     const enf_complex *c = &o.fixture.build.complex;

@@ -3,6 +3,7 @@
 #include "build/check_rows.h"
 
 #include "base/array.h"
+#include "format/frame.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -298,8 +299,8 @@ static bool check_spawn(enf_checker *checker, int32_t s) {
     const enf_file_view *view = checker->view;
     const enf_file_spawn *spawn = &view->spawns[s];
     double grid[3];
-    for (int a = 0; a < 3; a++)
-        grid[a] = rint(view->frame->sign[a] * spawn->position[view->frame->axis[a]] / view->frame->step);
+    enf_view_to_grid(view, spawn->position, grid);
+    for (int a = 0; a < 3; a++) grid[a] = rint(grid[a]);
     if (spawn->fine_cell < 0) {
         if (spawn->cell < 0 && outside_hull(checker, grid)) return true;
         return enf_check_break(checker, "spawn %d lies in the hull, but has no fine cell", (int)s);
@@ -401,11 +402,11 @@ static void check_boxes(enf_checker *checker) {
         int32_t cell = view->fine_cell[checker->face_cell[f]];
         for (int64_t c = view->face_offset[f]; cell >= 0 && c < view->face_offset[f + 1]; c++) {
             const double *at = view->vertex_position[view->face_corners[c].vertex];
+            double world[3];
+            enf_view_to_world(view, at, world);
             for (int a = 0; a < 3; a++) {
-                int axis = frame->axis[a];
-                double x = frame->sign[a] * at[a] * frame->step;
-                if (x >= view->cells[cell].box_min[axis] - allowed &&
-                    x <= view->cells[cell].box_max[axis] + allowed)
+                if (world[a] >= view->cells[cell].box_min[a] - allowed &&
+                    world[a] <= view->cells[cell].box_max[a] + allowed)
                     continue;
                 enf_check_break(checker, "fine cell %d reaches out of the box of cell %d",
                                 (int)checker->face_cell[f], (int)cell);

@@ -204,6 +204,12 @@ static enf_status make_frame(enf_image *image, const enf_build *build, enf_error
         out->sign[a] = frame->sign[a];
     }
     out->handedness = frame->handedness;
+    if (frame->is_turned) {
+        enf_file_turn *turn = enf_image_new(image, 1, sizeof *turn);
+        if (!turn) return enf_fail_memory(error, "the frame");
+        memcpy(turn->rows, frame->turn, sizeof turn->rows);
+        image->view.turn = turn;
+    }
     empty_box(out->box_min, out->box_max);
     for (int32_t i = 0; i < image->view.point_count; i++) {
         double world[3];
@@ -344,8 +350,8 @@ static void world_normal(const enf_build *build, int32_t plane, double normal[3]
     double length = 0;
     for (int a = 0; a < 3 && largest > 0; a++) length += (grid[a] / largest) * (grid[a] / largest);
     length = sqrt(length) * largest;
-    const enf_frame *frame = &build->mesh.frame;
-    for (int a = 0; a < 3; a++) normal[frame->axis[a]] = length > 0 ? frame->sign[a] * (grid[a] / length) : 0;
+    for (int a = 0; a < 3; a++) grid[a] = length > 0 ? grid[a] / length : 0;
+    enf_frame_direction_to_world(&build->mesh.frame, grid, normal);
 }
 
 typedef struct portal_writer {

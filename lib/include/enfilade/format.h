@@ -12,7 +12,7 @@
 
 #define ENF_FILE_MAGIC "ENFILADE"            ///< 8 bytes, no terminating zero in the file
 #define ENF_FILE_MAJOR 1                     ///< a reader refuses another major version
-#define ENF_FILE_MINOR 0                     ///< a reader accepts any minor version of its major one
+#define ENF_FILE_MINOR 1                     ///< a reader accepts any minor version of its major one
 #define ENF_FILE_ALIGNMENT 16                ///< sections begin at multiples of this
 #define ENF_FILE_GRID_MAX 9007199254740992.0 ///< 2^53: no grid coordinate is larger in magnitude
 
@@ -59,7 +59,8 @@ typedef struct enf_file_provenance {
     int64_t leak;                   ///< 1: a spawn's region reaches the outside
 } enf_file_provenance;
 
-/// grid[a] = sign[a] * world[axis[a]] / step
+/// grid[a] = sign[a] * turned[axis[a]] / step, where turned is the world's point, or what enf_file_turn makes of
+/// it
 typedef struct enf_file_frame {
     double step;        ///< a power of two, world units
     int32_t axis[3];    ///< a permutation of 0 1 2
@@ -72,6 +73,11 @@ typedef struct enf_file_frame {
     double locate_scale;    ///< a power of two >= 1: points are located on a grid this many times finer
     double locate_rounding; ///< grid steps; a point this little outside the hull still counts as inside
 } enf_file_frame;
+
+/// A rotation: turned[a] = rows[a] . world. Worlds whose walls are parallel to no axis have one.
+typedef struct enf_file_turn {
+    double rows[3][3];
+} enf_file_turn;
 
 /// Corner of a loop: see enf_corner in lib/build/complex.h.
 typedef struct enf_file_corner {
@@ -151,6 +157,7 @@ typedef struct enf_file_view {
 
     const enf_file_provenance *provenance;
     const enf_file_frame *frame;
+    const enf_file_turn *turn; ///< null: the world was not turned
     const char *strings; ///< zero-terminated texts one after the other; a string is an offset into it
     int64_t string_bytes;
 
