@@ -10,6 +10,7 @@
 static const cli_command benches[] = {
     {"thesis", "the worlds of the thesis: cells, splits, rooms found", cli_bench_thesis},
     {"levels", "DIR: compile every level in a folder; a row each", cli_bench_levels},
+    {"recovery", "DIR: levels rotated and rounded, against themselves", cli_bench_recovery},
 };
 
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };

@@ -11,4 +11,7 @@ int cli_bench_thesis(int argc, char **argv);
 /// Compiles every level in a folder, each in a process of its own; a row each.
 int cli_bench_levels(int argc, char **argv);
 
+/// Every level in a folder as tools leave it: rotated, rounded; compared with itself.
+int cli_bench_recovery(int argc, char **argv);
+
 #endif

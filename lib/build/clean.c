@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clean, in this order:
-//   1 judge      polygons of excluded groups and with corners that are missing, not finite or beyond 1e100 go;
+//   1 judge      polygons of excluded groups and with corners that are missing, not finite or beyond 1e100
+//   go;
 //                polygons of detail groups are set aside
-//   2 turn       a world that a rotation has touched is turned back, so that most of its area is axis-parallel
+//   2 turn       a world that a rotation has touched is turned back, so that most of its area is
+//   axis-parallel
 //                (turn.c)
-//   3 flatten    axis-parallel planes that rounding has torn become planes again (flatten.c). Turned or not, no
+//   3 flatten    axis-parallel planes that rounding has torn become planes again (flatten.c). Turned or not,
+//   no
 //                point is more than `plane_tolerance` from where it was (default 2e-7 of the diagonal of the
 //                points' box, more than single precision takes from a world around its origin)
 //   4 frame      the canonical axes and the grid step follow from the points (and polygons) in use (frame.c)
 //   5 round      every point to the nearest grid point
-//   6 weld       points within `weld` of an earlier one, in grid order, join it (default 1e-9 of the diagonal;
+//   6 weld       points within `weld` of an earlier one, in grid order, join it (default 1e-9 of the
+//   diagonal;
 //                weld.c)
 //   7 polygons   repeated and collinear corners go; what is planar and convex stays whole, the rest becomes
 //                triangles (ring.c, triangulate.c)
@@ -33,9 +37,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEFAULT_WELD 1e-9   ///< of the diagonal of the bounding box
+#define DEFAULT_WELD 1e-9            ///< of the diagonal of the bounding box
 #define DEFAULT_PLANE_TOLERANCE 2e-7 ///< of the same
-#define LARGEST_COORDINATE 1e100 ///< volumes and their sums stay finite
+#define LARGEST_COORDINATE 1e100     ///< volumes and their sums stay finite
 
 enum { CUTS, IS_DETAIL, IS_EXCLUDED };
 
@@ -215,8 +219,8 @@ static void measure_displacement(cleaner *c) {
     c->mesh->displacement_mean = used ? sum / (double)used * frame->step : 0;
 }
 
-/// Sets the tolerances that are used. The diagonal is taken in units of a power of two, so that no world is too
-/// large or too small.
+/// Sets the tolerances that are used. The diagonal is taken in units of a power of two, so that no world is
+/// too large or too small.
 static void choose_tolerances(cleaner *c, const double *points, size_t count) {
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, largest = 0, sum = 0;
     for (int a = 0; a < 3 && count; a++) {

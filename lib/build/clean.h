@@ -26,9 +26,9 @@ typedef struct enf_clean_options {
 
 /// The canonical frame. All stages from clean to portals work in grid coordinates: whole numbers of grid
 /// steps, at most 2^53 in magnitude, held in doubles, with the axes permuted and mirrored so that a world and
-/// its copy turned by right angles or mirrored look the same to every later stage. A world that most of its area
-/// shows to be turned by an odd angle is turned back first (turn.h):
-/// grid[a] = sign[a] * turned[axis[a]] / step, where turned[a] = turn[a] . user, or user itself
+/// its copy turned by right angles or mirrored look the same to every later stage. A world that most of its
+/// area shows to be turned by an odd angle is turned back first (turn.h): grid[a] = sign[a] * turned[axis[a]]
+/// / step, where turned[a] = turn[a] . user, or user itself
 typedef struct enf_frame {
     double step;    ///< a power of two, in world units
     int axis[3];    ///< a permutation of 0 1 2
@@ -65,10 +65,10 @@ typedef struct enf_mesh {
     double weld, plane_tolerance;               ///< the tolerances used, world units
     double displacement_max, displacement_mean; ///< how far used points moved, world units
     enf_turn_outcome turn_outcome;              ///< whether the world was turned, or why not
-    double aligned;   ///< share of the area square to an axis of the frame; 0: nobody looked
-    bool flattened;   ///< coordinates were moved to planes or to a lattice
-    bool on_lattice[3]; ///< per axis (before the frame's permutation): most coordinates were round numbers
-    size_t welded;                              ///< points that were merged into another
+    double aligned;      ///< share of the area square to an axis of the frame; 0: nobody looked
+    bool flattened;      ///< coordinates were moved to planes or to a lattice
+    bool on_lattice[3];  ///< per axis (before the frame's permutation): most coordinates were round numbers
+    size_t welded;       ///< points that were merged into another
     size_t triangulated; ///< soup polygons that were cut into several because not planar or not convex
     size_t two_sided;    ///< polygons with a kept twin that faces the other way
 } enf_mesh;

@@ -2,7 +2,8 @@
 // Per axis:
 //   1 planes   the coordinates of polygons that lie square to the axis, within the reach, are sorted and cut
 //              into clusters at most two reaches wide; a cluster has one value, in reach of all its members
-//   2 lattice  where polygons are torn (or turned), the coordinates may have been round numbers before: if half
+//   2 lattice  where polygons are torn (or turned), the coordinates may have been round numbers before: if
+//   half
 //              of them lie on one lattice (a power of two as step, any offset), as closely as the tears
 //              suggest, values that lie on it take the lattice's
 //   3 move     members take their plane's value; so do other coordinates in reach of it; those in reach of no
@@ -110,7 +111,8 @@ static size_t find_offset(flattener *f, int axis) {
     double low = f->values[best_first], high = f->values[last % f->count] + (last >= f->count ? f->step : 0);
     double unit = enf_power_of_two_above(f->width) / 8, middle = low + (high - low) / 2;
     f->offset = nearbyint(middle / unit) * unit;
-    if (high <= f->width || low >= f->step - f->width || (low >= f->step - f->width && high <= f->step + f->width))
+    if (high <= f->width || low >= f->step - f->width ||
+        (low >= f->step - f->width && high <= f->step + f->width))
         f->offset = 0;
     return best;
 }

@@ -9,7 +9,8 @@
 // sizes and by the square root of their number, small against the tolerance over the whole world.
 //
 // Everything is computed in the canonical axes of the raw points (frame.c), over polygons in canonical order
-// (pieces.c), with nothing but + - * / and square roots: the same bits for any order of the input, on any machine.
+// (pieces.c), with nothing but + - * / and square roots: the same bits for any order of the input, on any
+// machine.
 #include "build/turn.h"
 
 #include "base/array.h"
@@ -23,13 +24,13 @@
 
 enum { CLUSTERS = 64, REFINE_ROUNDS = 20, REFINE_MOST = 16384 };
 
-static const double same_direction = 1 / 64.0;   ///< sine of the angle
-static const double first_slope = 1 / 32.0;      ///< how far from square a polygon may be in the first round
-static const double aligned_enough = 0.5;        ///< of the area: no search
-static const double aligned_twice = 1 / 16.0;    ///< of it along a second axis, too
-static const double worth_turning = 0.25;        ///< of the area must become axis-parallel...
-static const double better_by = 1.25;            ///< ... and so many times what is
-static const double thickness = 32;              ///< a flat polygon is wider than this many reaches
+static const double same_direction = 1 / 64.0; ///< sine of the angle
+static const double first_slope = 1 / 32.0;    ///< how far from square a polygon may be in the first round
+static const double aligned_enough = 0.5;      ///< of the area: no search
+static const double aligned_twice = 1 / 16.0;  ///< of it along a second axis, too
+static const double worth_turning = 0.25;      ///< of the area must become axis-parallel...
+static const double better_by = 1.25;          ///< ... and so many times what is
+static const double thickness = 32;            ///< a flat polygon is wider than this many reaches
 
 typedef struct facing {
     double normal[3], area;
@@ -334,7 +335,7 @@ static bool find_axes(seeker *s) {
     int count = cluster_directions(s, directions);
     if (!guess_axes(s, directions, count) || !square_axes(s->axes)) return false;
     double slope = first_slope;
-    for (int round = 0; round < REFINE_ROUNDS; round++, slope = slope > 1e-12 ? slope / 8 : 0)
+    for (int round = 0; round<REFINE_ROUNDS; round++, slope = slope> 1e-12 ? slope / 8 : 0)
         if (!refine_once(s, slope)) return false;
     return true;
 }
@@ -397,7 +398,8 @@ enf_status enf_turn_find(enf_turn *turn, const double *points, size_t count, con
     enf_frame_choose(&frame, points, count, rings);
     seeker s = {.count = count, .reach = reach / frame.step};
     int32_t *rank = enf_array_new(count, sizeof *rank);
-    enf_status status = rank ? lay_out(&s, &frame, points, rank, error) : enf_fail_memory(error, "the points");
+    enf_status status =
+        rank ? lay_out(&s, &frame, points, rank, error) : enf_fail_memory(error, "the points");
     if (status == ENF_OK && !add_pieces(&s, rings, rank)) status = enf_fail_memory(error, "the polygons");
     if (status == ENF_OK) status = list_facings(&s, error);
     if (status == ENF_OK && s.total > 0)

@@ -48,9 +48,9 @@ typedef enum enf_dimension {
     ENF_DIMENSION_COUNT
 } enf_dimension;
 
-/// Which sections a file may leave out: none of a part that it has. Those that it may leave out one by one are
-/// optional, or needed: without knowing these the others are misread, so their section says so
-/// (ENF_FILE_MUST_KNOW).
+/// Which sections a file may leave out: none of a part that it has. Those that it may leave out one by one
+/// are optional, or needed: without knowing these the others are misread, so their section says so
+/// (ENF_FILE_MUST_KNOW). These two come last.
 typedef enum enf_part {
     ENF_PART_CORE,
     ENF_PART_EXACT,

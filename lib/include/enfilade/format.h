@@ -59,8 +59,8 @@ typedef struct enf_file_provenance {
     int64_t leak;                   ///< 1: a spawn's region reaches the outside
 } enf_file_provenance;
 
-/// grid[a] = sign[a] * turned[axis[a]] / step, where turned is the world's point, or what enf_file_turn makes of
-/// it
+/// grid[a] = sign[a] * turned[axis[a]] / step, where turned is the world's point, or what enf_file_turn makes
+/// of it
 typedef struct enf_file_frame {
     double step;        ///< a power of two, world units
     int32_t axis[3];    ///< a permutation of 0 1 2
@@ -158,7 +158,7 @@ typedef struct enf_file_view {
     const enf_file_provenance *provenance;
     const enf_file_frame *frame;
     const enf_file_turn *turn; ///< null: the world was not turned
-    const char *strings; ///< zero-terminated texts one after the other; a string is an offset into it
+    const char *strings;       ///< zero-terminated texts one after the other; a string is an offset into it
     int64_t string_bytes;
 
     // World: regions, cells, portals.
