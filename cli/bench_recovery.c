@@ -30,7 +30,7 @@ static const char *const rotation_names[ROTATIONS] = {"as it is", "7 8 9 degrees
 typedef struct outcome {
     double seconds;
     int32_t fine_cells, regions;
-    bool leak;
+    double leak; ///< width of the narrowest place on the way out; -1: no leak
     int64_t spawns_kept;
     int32_t spawns;
     double displacement, volume; ///< of all kept regions
@@ -123,7 +123,7 @@ static enf_status note_outcome(outcome *out, const cli_job *job, enf_error *erro
     double step = build->mesh.frame.step, width = fmax(build->mesh.weld, build->mesh.plane_tolerance);
     *out = (outcome){.fine_cells = build->complex.cell_count,
                      .regions = build->regions.region_count,
-                     .leak = build->regions.leak,
+                     .leak = build->regions.leak ? build->regions.leak_width * step : -1,
                      .spawns_kept = counts.spawns_in_cells,
                      .spawns = build->regions.spawn_count,
                      .displacement = build->mesh.displacement_max};
@@ -193,11 +193,19 @@ static double volume_difference(const outcome *a, const outcome *b) {
     return a->volume > 0 ? worst / a->volume : 0;
 }
 
+/// "-", or how narrow the leak is.
+static const char *print_leak(char text[32], double width) {
+    if (width < 0) return "-";
+    snprintf(text, 32, "%.2e", width);
+    return text;
+}
+
 static void print_row(const char *name, int rotation, rounding how, const outcome *base, const outcome *out) {
+    char leak[32];
     printf("%s,%s,%s,%.3f,%.2f,%" PRId32 ",%.3f,%zu,%zu,%.1e,%s,%" PRId64 "/%" PRId32 ",%.2e\n", name,
            rotation_names[rotation], rounding_names[how], out->seconds, out->seconds / base->seconds,
            out->fine_cells, (double)out->fine_cells / base->fine_cells, out->volume_count, base->volume_count,
-           volume_difference(base, out), out->leak ? "LEAK" : "-", out->spawns_kept, out->spawns,
+           volume_difference(base, out), print_leak(leak, out->leak), out->spawns_kept, out->spawns,
            out->displacement);
     fflush(stdout);
 }
@@ -278,7 +286,7 @@ int cli_bench_recovery(int argc, char **argv) {
             "Compiles every level in a folder as it is, rotated by (7, 8, 9) degrees and by three random\n"
             "rotations, each exactly, rounded to single precision and to four decimals. Ratios are to the\n"
             "level as it is; volume_difference is the largest between regions of the same rank, as a part\n"
-            "of the kept volume; displacement is the largest, in world units. Writes csv.",
+            "of the kept volume; leak is the width of its narrowest place; displacement is the largest, in world units. Writes csv.",
         .options = options,
         .operands_min = 1,
         .operands_max = 1,

@@ -24,12 +24,11 @@
 #include "build/clean.h"
 
 #include "base/array.h"
-#include "build/flatten.h"
 #include "build/frame.h"
 #include "build/pieces.h"
+#include "build/recover.h"
 #include "build/ring.h"
 #include "build/triangulate.h"
-#include "build/turn.h"
 #include "build/weld.h"
 
 #include <fnmatch.h>
@@ -37,8 +36,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEFAULT_WELD 1e-9            ///< of the diagonal of the bounding box
-#define DEFAULT_PLANE_TOLERANCE 2e-7 ///< of the same
 #define LARGEST_COORDINATE 1e100     ///< volumes and their sums stay finite
 
 enum { CUTS, IS_DETAIL, IS_EXCLUDED };
@@ -193,11 +190,6 @@ static size_t weld(cleaner *c, enf_site *sites, size_t count, double distance, i
     return kept;
 }
 
-/// Distinct points' numbers for the stages that look at polygons.
-static enf_frame_rings rings_of(const cleaner *c) {
-    return (enf_frame_rings){c->soup, c->cutting, c->cutting_count, c->final_of};
-}
-
 /// How far the used points moved, in all, in world units.
 static void measure_displacement(cleaner *c) {
     const enf_frame *frame = &c->mesh->frame;
@@ -219,61 +211,6 @@ static void measure_displacement(cleaner *c) {
     c->mesh->displacement_mean = used ? sum / (double)used * frame->step : 0;
 }
 
-/// Sets the tolerances that are used. The diagonal is taken in units of a power of two, so that no world is
-/// too large or too small.
-static void choose_tolerances(cleaner *c, const double *points, size_t count) {
-    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, largest = 0, sum = 0;
-    for (int a = 0; a < 3 && count; a++) {
-        low[a] = high[a] = points[a];
-        for (size_t i = 1; i < count; i++) {
-            low[a] = fmin(low[a], points[3 * i + (size_t)a]);
-            high[a] = fmax(high[a], points[3 * i + (size_t)a]);
-        }
-        largest = fmax(largest, high[a] - low[a]);
-    }
-    double unit = largest > 0 ? enf_power_of_two_above(largest) : 1;
-    for (int a = 0; a < 3; a++) sum += (high[a] - low[a]) / unit * ((high[a] - low[a]) / unit);
-    const enf_clean_options *options = c->options;
-    c->mesh->weld = options->weld < 0 ? DEFAULT_WELD * sqrt(sum) * unit : options->weld;
-    c->mesh->plane_tolerance =
-        options->plane_tolerance < 0 ? DEFAULT_PLANE_TOLERANCE * sqrt(sum) * unit : options->plane_tolerance;
-}
-
-/// Steps 2 and 3, on different points. *changed: they are not what they were.
-static enf_status recover_planes(cleaner *c, double *points, size_t count, bool *changed) {
-    enf_mesh *mesh = c->mesh;
-    enf_frame_rings rings = rings_of(c);
-    enf_frame frame;
-    enf_turn turn;
-    enf_flattening flattening;
-    double reach = mesh->plane_tolerance / sqrt(3); // of one coordinate
-    enf_status status = enf_turn_find(&turn, points, count, &rings, reach, c->error);
-    if (status != ENF_OK) return status;
-    mesh->turn_outcome = turn.outcome;
-    mesh->aligned = turn.aligned;
-    *changed = turn.outcome == ENF_TURN_FOUND;
-    for (size_t i = 0; i < count && *changed; i++) {
-        double at[3];
-        memcpy(at, &points[3 * i], sizeof at);
-        for (int a = 0; a < 3; a++) {
-            const double *row = turn.rows[a];
-            points[3 * i + (size_t)a] = row[0] * at[0] + row[1] * at[1] + row[2] * at[2];
-        }
-    }
-    // Clusters depend on where they begin, so they are made along the canonical axes.
-    enf_frame_choose(&frame, points, count, &rings);
-    frame.step = 1;
-    for (size_t i = 0; i < count; i++) enf_frame_to_grid(&frame, &points[3 * i], &points[3 * i]);
-    status = enf_flatten(points, count, &rings, reach, *changed, &flattening, c->error);
-    for (size_t i = 0; i < count; i++) enf_frame_to_world(&frame, &points[3 * i], &points[3 * i]);
-    mesh->flattened = flattening.moved;
-    for (int a = 0; a < 3; a++) mesh->on_lattice[frame.axis[a]] = flattening.lattice[a] > 0;
-    mesh->frame.is_turned = *changed;
-    memcpy(mesh->frame.turn, turn.rows, sizeof turn.rows);
-    *changed = *changed || flattening.moved;
-    return status;
-}
-
 static void take_points(enf_site *sites, const double *points, size_t count) {
     for (size_t i = 0; i < count; i++) {
         sites[i].id = (int32_t)i;
@@ -288,24 +225,18 @@ static void give_points(const enf_site *sites, double *points, size_t count) {
 /// Steps 2 to 4; `distinct` is room for the points.
 static enf_status settle_frame(cleaner *c, enf_site *sites, size_t *count, double *distinct,
                                int32_t *scratch) {
+    enf_frame_rings rings = {c->soup, c->cutting, c->cutting_count, c->final_of};
     give_points(sites, distinct, *count);
-    choose_tolerances(c, distinct, *count);
+    enf_tolerances_choose(c->mesh, c->options, distinct, *count);
     bool changed = false;
-    if (c->mesh->plane_tolerance > 0) {
-        enf_status status = recover_planes(c, distinct, *count, &changed);
-        if (status != ENF_OK) return status;
-    }
+    enf_status status = enf_planes_recover(c->mesh, distinct, *count, &rings, &changed, c->error);
+    if (status != ENF_OK) return status;
     if (changed) {
         take_points(sites, distinct, *count);
         *count = unite(c, sites, *count, scratch);
         give_points(sites, distinct, *count);
     }
-    enf_frame_rings rings = rings_of(c);
-    enf_frame frame;
-    enf_frame_choose(&frame, distinct, *count, &rings);
-    frame.is_turned = c->mesh->frame.is_turned;
-    memcpy(frame.turn, c->mesh->frame.turn, sizeof frame.turn);
-    c->mesh->frame = frame;
+    enf_frame_choose(&c->mesh->frame, distinct, *count, &rings);
     return ENF_OK;
 }
 

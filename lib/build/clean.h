@@ -14,6 +14,9 @@ typedef enum enf_turn_outcome {
     ENF_TURN_FOUND,
 } enf_turn_outcome;
 
+/// "off", "round", ... : the name used in reports.
+const char *enf_turn_outcome_name(enf_turn_outcome outcome);
+
 typedef struct enf_clean_options {
     double weld; ///< world units; corners closer than this become one; < 0: default; 0: only equal ones
     double plane_tolerance;     ///< world units; how far a point may move to be on a plane again (turn.h,
@@ -67,7 +70,7 @@ typedef struct enf_mesh {
     enf_turn_outcome turn_outcome;              ///< whether the world was turned, or why not
     double aligned;      ///< share of the area square to an axis of the frame; 0: nobody looked
     bool flattened;      ///< coordinates were moved to planes or to a lattice
-    bool on_lattice[3];  ///< per axis (before the frame's permutation): most coordinates were round numbers
+    int lattices;     ///< axes along which most coordinates were round numbers before they were torn
     size_t welded;       ///< points that were merged into another
     size_t triangulated; ///< soup polygons that were cut into several because not planar or not convex
     size_t two_sided;    ///< polygons with a kept twin that faces the other way

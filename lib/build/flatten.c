@@ -4,8 +4,9 @@
 //              into clusters at most two reaches wide; a cluster has one value, in reach of all its members
 //   2 lattice  where polygons are torn (or turned), the coordinates may have been round numbers before: if
 //   half
-//              of them lie on one lattice (a power of two as step, any offset), as closely as the tears
-//              suggest, values that lie on it take the lattice's
+//              of them lie on one lattice, as closely as the tears suggest, values that lie on it take the
+//              lattice's. Its step is a power of two (with any offset), or that divided by a power of five:
+//              decimal fractions, in any unit that a power of two makes of them
 //   3 move     members take their plane's value; so do other coordinates in reach of it; those in reach of no
 //              plane may still take the lattice's
 // Coordinates without such evidence stay: a world of slopes is not touched, and neither is a clean one.
@@ -19,8 +20,10 @@
 #include <string.h>
 
 static const double thickness = 32;     ///< a flat polygon is wider than this many reaches
-static const double lattice_width = 32; ///< steps of a lattice per width of its points: few hit it by chance
-static const double least_noise = 0x1p-44; ///< of the largest coordinate, after a turn
+static const double lattice_width = 64; ///< steps of a lattice per width of its points: few hit it by chance
+static const double least_noise = 0x1p-51; ///< of the largest coordinate, after a turn
+
+enum { DIVISORS = 6 }; // 1, 5, 25, ...
 
 typedef struct plane {
     double low, high, value; ///< members, and what they become
@@ -31,10 +34,12 @@ typedef struct flattener {
     size_t count;
     double reach, noise;
     unsigned char *flat; ///< per point: bit a: a corner of a polygon that is square to axis a
-    double *values;      ///< scratch
+    double *widths;      ///< of the polygons that are square to an axis
+    size_t width_count;
+    double *values; ///< scratch
     plane *planes;
     size_t plane_count;
-    double step, offset, width; ///< the lattice of the axis at hand, or step 0
+    double step, divisor, offset, width; ///< the lattice of the axis at hand (step / divisor), or step 0
 } flattener;
 
 static int compare_doubles(const void *left, const void *right) {
@@ -59,21 +64,44 @@ static void mark_polygon(flattener *f, const enf_frame_rings *rings, int32_t pol
     for (int a = 0; a < 3; a++) {
         if (!(extent[a] <= 2 * f->reach)) continue;
         if (!(fmin(extent[(a + 1) % 3], extent[(a + 2) % 3]) >= thickness * f->reach)) continue;
-        f->noise = fmax(f->noise, extent[a]);
+        f->widths[f->width_count++] = extent[a];
         for (int64_t i = first; i < end; i++)
             f->flat[rings->place_of[soup->corner_point[i]]] |= (unsigned char)(1 << a);
     }
 }
 
+/// Nine in ten polygons are torn by less; four times that, so that nothing torn is missed. A few may be flat
+/// by chance, and their width says nothing.
+static double measure_noise(flattener *f) {
+    if (f->width_count == 0) return 0;
+    qsort(f->widths, f->width_count, sizeof *f->widths, compare_doubles);
+    return 4 * f->widths[(f->width_count * 9 - 1) / 10];
+}
+
 // ---- 1: planes
 
-/// values[0 .. count) sorted: one cluster. Its value is the mean, as far as all members can reach it.
-static plane make_plane(const double *values, size_t count, double reach) {
+/// The lowest binary digit of x that is not 0: the larger, the rounder the number.
+static double lowest_digit(double x) {
+    int exponent;
+    double mantissa = frexp(fabs(x), &exponent);
+    int64_t digits = (int64_t)ldexp(mantissa, 53);
+    return digits ? ldexp((double)(digits & -digits), exponent - 53) : INFINITY;
+}
+
+/// values[0 .. count) sorted: one cluster. Its value is the mean, as far as all members can reach it; where
+/// hardly anything is torn, the roundest member that they can reach.
+static plane make_plane(const flattener *f, const double *values, size_t count) {
     plane out = {values[0], values[count - 1], values[0]};
     if (out.low == out.high) return out;
-    double sum = 0;
+    double sum = 0, roundest = 0;
     for (size_t i = 0; i < count; i++) sum += values[i] - out.low;
-    out.value = fmin(fmax(out.low + sum / (double)count, out.high - reach), out.low + reach);
+    out.value = fmin(fmax(out.low + sum / (double)count, out.high - f->reach), out.low + f->reach);
+    for (size_t i = 0; i < count && f->noise == 0; i++) {
+        double digit = lowest_digit(values[i]);
+        if (values[i] < out.high - f->reach || values[i] > out.low + f->reach || digit <= roundest) continue;
+        roundest = digit;
+        out.value = values[i];
+    }
     return out;
 }
 
@@ -85,7 +113,7 @@ static void find_planes(flattener *f, int axis) {
     qsort(f->values, count, sizeof *f->values, compare_doubles);
     for (size_t first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && f->values[end] - f->values[first] <= 2 * f->reach;) end++;
-        f->planes[f->plane_count++] = make_plane(f->values + first, end - first, f->reach);
+        f->planes[f->plane_count++] = make_plane(f, f->values + first, end - first);
     }
 }
 
@@ -117,21 +145,58 @@ static size_t find_offset(flattener *f, int axis) {
     return best;
 }
 
-static void find_lattice(flattener *f, int axis) {
-    double noise = f->noise;
-    for (size_t i = 0; i < f->plane_count; i++) noise = fmax(noise, f->planes[i].high - f->planes[i].low);
-    f->step = 0;
-    if (!(noise > 0)) return;
-    f->width = fmin(f->reach, 2 * noise);
-    f->step = enf_power_of_two_above(lattice_width * f->width);
-    if (2 * find_offset(f, axis) < f->count) f->step = 0;
+/// The point of the lattice that is nearest to x.
+static double nearest_of_lattice(const flattener *f, double x) {
+    return nearbyint((x - f->offset) * f->divisor / f->step) * f->step / f->divisor + f->offset;
 }
 
 /// The lattice's value if that is near enough to x, else x.
 static double on_lattice(const flattener *f, double x) {
     if (!(f->step > 0)) return x;
-    double nearest = nearbyint((x - f->offset) / f->step) * f->step + f->offset;
+    double nearest = nearest_of_lattice(f, x);
     return fabs(nearest - x) <= f->width ? nearest : x;
+}
+
+/// How many coordinates lie on the lattice.
+static size_t count_hits(flattener *f, int axis) {
+    size_t hits = 0;
+    for (size_t i = 0; i < f->count; i++) {
+        double x = f->points[3 * i + (size_t)axis];
+        hits += fabs(nearest_of_lattice(f, x) - x) <= f->width;
+    }
+    return hits;
+}
+
+/// The best lattice whose points are `width` wide, or step 0. A finer fraction must explain at least half of what
+/// the simpler one leaves.
+static void try_width(flattener *f, int axis, double width) {
+    double divisor = 1, offset = 0, least = lattice_width * width, chosen = 1;
+    size_t misses = 0;
+    f->width = width;
+    for (int d = 0; d < DIVISORS; d++, divisor *= 5) {
+        f->divisor = divisor;
+        f->offset = 0;
+        f->step = enf_power_of_two_above(least * divisor);
+        size_t left = f->count - (d ? count_hits(f, axis) : find_offset(f, axis));
+        if (d && 2 * left > misses) continue;
+        if (d && misses == 0) break;
+        offset = f->offset;
+        chosen = divisor;
+        misses = left;
+    }
+    f->divisor = chosen;
+    f->offset = offset;
+    f->step = 2 * misses > f->count ? 0 : enf_power_of_two_above(least * chosen);
+}
+
+/// The turn, too, may be off by a little, more than single polygons show: wider points follow narrow ones.
+static void find_lattice(flattener *f, int axis) {
+    f->step = 0;
+    if (!(f->noise > 0)) return;
+    for (double width = fmin(f->reach, f->noise); f->step == 0; width = fmin(f->reach, 16 * width)) {
+        try_width(f, axis, width);
+        if (width == f->reach) break;
+    }
 }
 
 // ---- 3: move
@@ -196,16 +261,18 @@ enf_status enf_flatten(double *points, size_t count, const enf_frame_rings *ring
     f.flat = enf_array_zeroed(count, sizeof *f.flat);
     f.values = enf_array_new(count, sizeof *f.values);
     f.planes = enf_array_new(count, sizeof *f.planes);
-    enf_status status = f.flat && f.values && f.planes ? ENF_OK : enf_fail_memory(error, "the planes");
+    f.widths = enf_array_new(rings->polygon_count, 3 * sizeof *f.widths);
+    enf_status status = f.flat && f.values && f.planes && f.widths ? ENF_OK : enf_fail_memory(error, "the planes");
     for (size_t k = 0; k < rings->polygon_count && status == ENF_OK; k++)
         mark_polygon(&f, rings, rings->polygons[k]);
     double largest = 0;
     for (size_t i = 0; i < 3 * count && turned; i++) largest = fmax(largest, fabs(points[i]));
-    f.noise = fmax(f.noise, least_noise * largest);
+    f.noise = fmax(measure_noise(&f), least_noise * largest);
     result->noise = f.noise;
     for (int axis = 0; axis < 3 && status == ENF_OK; axis++) move_axis(&f, axis, result);
     free(f.flat);
     free(f.values);
     free(f.planes);
+    free(f.widths);
     return status;
 }

@@ -9,7 +9,7 @@
 typedef struct enf_flattening {
     bool moved;     ///< any point
     int64_t planes; ///< different coordinates at which a polygon lies square to an axis, over the three axes
-    double noise;   ///< the most that the corners of one such polygon differed
+    double noise;   ///< how much the corners of such polygons differ, with few exceptions
     double lattice[3]; ///< per axis: the step of the lattice that most coordinates lie on; 0: not looked for,
                        ///< none
 } enf_flattening;

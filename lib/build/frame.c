@@ -170,7 +170,11 @@ static void choose_candidate(enf_frame *frame, const enf_frame *candidates, int 
         uint64_t ring_hash = ties > 1 ? hash_rings(&candidates[c], points, rings) : 0;
         if (best < 0 || ring_hash < least_ring) best = c, least_ring = ring_hash;
     }
-    *frame = candidates[best < 0 ? 0 : best];
+    const enf_frame *chosen = &candidates[best < 0 ? 0 : best];
+    frame->step = chosen->step;
+    frame->handedness = chosen->handedness;
+    memcpy(frame->axis, chosen->axis, sizeof frame->axis);
+    memcpy(frame->sign, chosen->sign, sizeof frame->sign);
 }
 
 void enf_frame_choose(enf_frame *frame, const double *points, size_t count, const enf_frame_rings *rings) {

@@ -394,7 +394,7 @@ enf_status enf_turn_find(enf_turn *turn, const double *points, size_t count, con
     if (!(reach > 0) || count < 3 || rings->polygon_count == 0) return ENF_OK;
     turn->outcome = ENF_TURN_ROUND;
     if (enf_points_are_round(points, count, enf_power_of_two_above(32 * reach))) return ENF_OK;
-    enf_frame frame;
+    enf_frame frame = {0};
     enf_frame_choose(&frame, points, count, rings);
     seeker s = {.count = count, .reach = reach / frame.step};
     int32_t *rank = enf_array_new(count, sizeof *rank);

@@ -398,6 +398,18 @@ static void add_portal_polygon(portal_writer *writer, int32_t loop, int directio
     }
 }
 
+/// A turn rounds the corners, so the sphere has to be made for them.
+static void grow_sphere(const portal_writer *writer, enf_file_portal *portal, int32_t first) {
+    for (int32_t k = first; k < writer->vertex_count; k++) {
+        double square = 0;
+        for (int a = 0; a < 3; a++) {
+            double d = writer->vertices[k][a] - portal->centre[a];
+            square += d * d;
+        }
+        portal->radius = fmax(portal->radius, sqrt(square) * (1 + 0x1p-48));
+    }
+}
+
 static void add_opening(portal_writer *writer, int32_t opening) {
     const enf_portals *portals = &writer->build->portals;
     int32_t first = portals->opening_polygon[opening], end = portals->opening_polygon[opening + 1];
@@ -409,7 +421,9 @@ static void add_opening(portal_writer *writer, int32_t opening) {
         out->polygon_count = end - first;
         enf_frame_to_world(&writer->build->mesh.frame, portals->opening_centre[opening], out->centre);
         out->radius = portals->opening_radius[opening] * writer->build->mesh.frame.step;
+        int32_t vertex = writer->vertex_count;
         for (int32_t loop = first; loop < end; loop++) add_portal_polygon(writer, loop, direction);
+        if (writer->build->mesh.frame.is_turned) grow_sphere(writer, out, vertex);
     }
 }
 
