@@ -286,7 +286,8 @@ int cli_bench_recovery(int argc, char **argv) {
             "Compiles every level in a folder as it is, rotated by (7, 8, 9) degrees and by three random\n"
             "rotations, each exactly, rounded to single precision and to four decimals. Ratios are to the\n"
             "level as it is; volume_difference is the largest between regions of the same rank, as a part\n"
-            "of the kept volume; leak is the width of its narrowest place; displacement is the largest, in world units. Writes csv.",
+            "of the kept volume; leak is the width of its narrowest place; displacement is the largest, in "
+            "world units. Writes csv.",
         .options = options,
         .operands_min = 1,
         .operands_max = 1,

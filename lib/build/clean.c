@@ -36,7 +36,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGEST_COORDINATE 1e100     ///< volumes and their sums stay finite
+#define LARGEST_COORDINATE 1e100 ///< volumes and their sums stay finite
 
 enum { CUTS, IS_DETAIL, IS_EXCLUDED };
 

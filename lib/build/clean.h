@@ -70,7 +70,7 @@ typedef struct enf_mesh {
     enf_turn_outcome turn_outcome;              ///< whether the world was turned, or why not
     double aligned;      ///< share of the area square to an axis of the frame; 0: nobody looked
     bool flattened;      ///< coordinates were moved to planes or to a lattice
-    int lattices;     ///< axes along which most coordinates were round numbers before they were torn
+    int lattices;        ///< axes along which most coordinates were round numbers before they were torn
     size_t welded;       ///< points that were merged into another
     size_t triangulated; ///< soup polygons that were cut into several because not planar or not convex
     size_t two_sided;    ///< polygons with a kept twin that faces the other way

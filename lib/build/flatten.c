@@ -167,8 +167,8 @@ static size_t count_hits(flattener *f, int axis) {
     return hits;
 }
 
-/// The best lattice whose points are `width` wide, or step 0. A finer fraction must explain at least half of what
-/// the simpler one leaves.
+/// The best lattice whose points are `width` wide, or step 0. A finer fraction must explain at least half of
+/// what the simpler one leaves.
 static void try_width(flattener *f, int axis, double width) {
     double divisor = 1, offset = 0, least = lattice_width * width, chosen = 1;
     size_t misses = 0;
@@ -262,7 +262,8 @@ enf_status enf_flatten(double *points, size_t count, const enf_frame_rings *ring
     f.values = enf_array_new(count, sizeof *f.values);
     f.planes = enf_array_new(count, sizeof *f.planes);
     f.widths = enf_array_new(rings->polygon_count, 3 * sizeof *f.widths);
-    enf_status status = f.flat && f.values && f.planes && f.widths ? ENF_OK : enf_fail_memory(error, "the planes");
+    enf_status status =
+        f.flat && f.values && f.planes && f.widths ? ENF_OK : enf_fail_memory(error, "the planes");
     for (size_t k = 0; k < rings->polygon_count && status == ENF_OK; k++)
         mark_polygon(&f, rings, rings->polygons[k]);
     double largest = 0;

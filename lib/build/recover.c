@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Turn first (turn.c), then flatten (flatten.c). The default tolerance is more than what single precision takes
-// from a world around its origin: a coordinate is off by 2^-24 of itself, after a rotation by as much of the
-// point's distance from the origin, and a third of the tolerance's square goes to each of three coordinates.
+// Turn first (turn.c), then flatten (flatten.c). The default tolerance is more than what single precision
+// takes from a world around its origin: a coordinate is off by 2^-24 of itself, after a rotation by as much
+// of the point's distance from the origin, and a third of the tolerance's square goes to each of three
+// coordinates.
 #include "build/recover.h"
 
 #include "build/flatten.h"
@@ -41,17 +42,6 @@ const char *enf_turn_outcome_name(enf_turn_outcome outcome) {
     return names[outcome];
 }
 
-static void turn_points(const enf_turn *turn, double *points, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        double at[3];
-        memcpy(at, &points[3 * i], sizeof at);
-        for (int a = 0; a < 3; a++) {
-            const double *row = turn->rows[a];
-            points[3 * i + (size_t)a] = row[0] * at[0] + row[1] * at[1] + row[2] * at[2];
-        }
-    }
-}
-
 /// Along the canonical axes, because clusters depend on where they begin.
 static enf_status flatten(enf_mesh *mesh, double *points, size_t count, const enf_frame_rings *rings,
                           double reach, bool turned, enf_error *error) {
@@ -79,7 +69,6 @@ enf_status enf_planes_recover(enf_mesh *mesh, double *points, size_t count, cons
     mesh->aligned = turn.aligned;
     mesh->frame.is_turned = turned;
     memcpy(mesh->frame.turn, turn.rows, sizeof turn.rows);
-    if (turned) turn_points(&turn, points, count);
     if (reach > 0) status = flatten(mesh, points, count, rings, reach, turned, error);
     *changed = turned || mesh->flattened;
     return status;

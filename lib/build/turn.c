@@ -372,6 +372,16 @@ static void give_rows(const seeker *s, const enf_frame *frame, double rows[3][3]
     for (int b = 0; b < 3 && frame->handedness < 0; b++) rows[2][b] = -rows[2][b];
 }
 
+/// Turns the points. Sums run over the canonical axes, so that they are rounded the same way for any order of
+/// the user's.
+static void turn_points(const seeker *s, const enf_frame *frame, const int32_t *rank, double *points) {
+    for (size_t i = 0; i < s->count; i++) {
+        const double *at = &s->at[3 * (size_t)rank[i]];
+        for (int a = 0; a < 3; a++) points[3 * i + (size_t)a] = dot(s->axes[a], at) * frame->step;
+        if (frame->handedness < 0) points[3 * i + 2] = -points[3 * i + 2];
+    }
+}
+
 static void judge(seeker *s, const enf_frame *frame, enf_turn *turn) {
     double area[3];
     for (int a = 0; a < 3; a++)
@@ -388,7 +398,7 @@ static void judge(seeker *s, const enf_frame *frame, enf_turn *turn) {
     give_rows(s, frame, turn->rows);
 }
 
-enf_status enf_turn_find(enf_turn *turn, const double *points, size_t count, const enf_frame_rings *rings,
+enf_status enf_turn_find(enf_turn *turn, double *points, size_t count, const enf_frame_rings *rings,
                          double reach, enf_error *error) {
     *turn = (enf_turn){.rows = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     if (!(reach > 0) || count < 3 || rings->polygon_count == 0) return ENF_OK;
@@ -402,10 +412,9 @@ enf_status enf_turn_find(enf_turn *turn, const double *points, size_t count, con
         rank ? lay_out(&s, &frame, points, rank, error) : enf_fail_memory(error, "the points");
     if (status == ENF_OK && !add_pieces(&s, rings, rank)) status = enf_fail_memory(error, "the polygons");
     if (status == ENF_OK) status = list_facings(&s, error);
-    if (status == ENF_OK && s.total > 0)
-        judge(&s, &frame, turn);
-    else
-        turn->outcome = ENF_TURN_NONE;
+    turn->outcome = ENF_TURN_NONE;
+    if (status == ENF_OK && s.total > 0) judge(&s, &frame, turn);
+    if (status == ENF_OK && turn->outcome == ENF_TURN_FOUND) turn_points(&s, &frame, rank, points);
     free(rank);
     free(s.at);
     free(s.facings);

@@ -13,10 +13,11 @@ typedef struct enf_turn {
     double aligned_before; ///< the same without the turn; both 0 where nobody looked
 } enf_turn;
 
-/// `points`, `rings`: as for enf_frame_choose. `reach`: how far (world units) a coordinate may be off. The
-/// result does not depend on the order of points and polygons; a world that is turned by right angles,
-/// mirrored or scaled by a power of two gets the same turned points, up to right angles and mirrors.
-enf_status enf_turn_find(enf_turn *turn, const double *points, size_t count, const enf_frame_rings *rings,
+/// `points`, `rings`: as for enf_frame_choose; if a turn is found, the points are turned by it. `reach`: how
+/// far (world units) a coordinate may be off. The result does not depend on the order of points and polygons;
+/// a world that is turned by right angles, mirrored or scaled by a power of two gets the same turned points,
+/// up to right angles and mirrors.
+enf_status enf_turn_find(enf_turn *turn, double *points, size_t count, const enf_frame_rings *rings,
                          double reach, enf_error *error);
 
 /// At least half of the coordinates are whole multiples of `step`, a power of two.
