@@ -83,6 +83,38 @@ static double piece_width(const enf_checker *checker, const enf_check_loop *loop
     return width * checker->exact.unit;
 }
 
+/// Is the fine cell (-1: none) a layer thinner than `thin` grid steps: volume against half the surface, or a
+/// needle? From rounded corners.
+static bool is_layer(const enf_checker *checker, int32_t cell, double thin) {
+    const enf_file_view *view = checker->view;
+    double volume = 0, surface = 0, size = 0;
+    const double *apex = NULL;
+    for (int32_t f = cell < 0 ? 0 : view->fine_face[cell]; cell >= 0 && f < view->fine_face[cell + 1]; f++) {
+        const enf_file_corner *corners = view->face_corners + view->face_offset[f];
+        int64_t count = view->face_offset[f + 1] - view->face_offset[f];
+        const double *first = view->vertex_position[corners[0].vertex];
+        double area[3] = {0, 0, 0};
+        if (!apex) apex = first;
+        for (int64_t k = 1; k < count; k++) {
+            const double *p = view->vertex_position[corners[k].vertex],
+                         *q = view->vertex_position[corners[(k + 1) % count].vertex];
+            double square = 0;
+            for (int a = 0; a < 3; a++) {
+                int b = (a + 1) % 3, c = (a + 2) % 3;
+                area[a] +=
+                    ((p[b] - first[b]) * (q[c] - first[c]) - (p[c] - first[c]) * (q[b] - first[b])) / 2;
+                square += (p[a] - apex[a]) * (p[a] - apex[a]);
+            }
+            size = fmax(size, sqrt(square));
+        }
+        double height = 0;
+        for (int a = 0; a < 3; a++) height += area[a] * (first[a] - apex[a]) / 3;
+        volume += view->face_side[f] ? -height : height;
+        surface += sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+    }
+    return cell >= 0 && (2 * volume <= thin * surface || surface <= thin * 2 * size);
+}
+
 /// Widths come from rounded corners (and lose half their digits in the subtraction): two grid steps, and
 /// 2^-24 of the piece's size, are allowed.
 static bool check_seal(enf_checker *checker, int32_t piece, int32_t facet, double crack) {
@@ -100,15 +132,18 @@ static bool check_seal(enf_checker *checker, int32_t piece, int32_t facet, doubl
         for (int a = 0; a < 3; a++)
             size = fmax(size, fabs(checker->exact.near[loop.corners[k].vertex][a] - p[a]));
     }
-    if (piece_width(checker, &loop) <= crack + 2 + 0x1p-24 * size * checker->exact.unit) return true;
-    return enf_check_break(checker, "piece %d is sealed, though it is wider than the weld distance",
-                           (int)piece);
+    double allowed = crack + 2 + 0x1p-24 * size * checker->exact.unit;
+    if (piece_width(checker, &loop) <= allowed) return true;
+    for (int side = 0; side < 2; side++)
+        if (face[side] >= 0 && is_layer(checker, checker->face_cell[face[side]], allowed)) return true;
+    return enf_check_break(checker, "piece %d is sealed, though it is wider than the tolerance", (int)piece);
 }
 
 static void check_seals(enf_checker *checker) {
     const enf_file_view *view = checker->view;
-    enf_check_begin(checker, "colour: seals",
-                    "only cracks between two regions, narrower than the tolerance, are sealed");
+    enf_check_begin(
+        checker, "colour: seals",
+        "only cracks between two regions, narrower than the tolerance, and layers thinner are sealed");
     double crack = fmax(view->frame->weld, view->frame->plane_tolerance) / view->frame->step;
     int64_t sealed = 0;
     for (int32_t f = 0; f < view->facet_count; f++) {

@@ -8,14 +8,16 @@
 //   air      otherwise. A spawn point makes its region air (or outside, with a leak) whatever the polygons
 //   say.
 // Rounded coordinates leave hairline cracks between polygons that once met. An opening narrower than the weld
-// distance does not join two regions: where nothing wider joins them either, it is sealed (and reported);
-// inside a region such slivers stay open, so no sight line is lost.
+// distance (or the plane tolerance) does not join two regions, nor does a layer that is thinner (gap.h):
+// where nothing wider joins them either, it is sealed (and reported); inside a region such slivers stay open,
+// so no sight line is lost.
 // --keep auto keeps the regions with spawn points; without any, every air region; if there is none, the
 // outside.
 #include "build/region.h"
 
 #include "base/array.h"
 #include "base/sets.h"
+#include "build/gap.h"
 #include "build/leak.h"
 #include "build/spawn.h"
 #include "build/winding.h"
@@ -51,24 +53,31 @@ static void piece_cells(const enf_complex *complex, const int32_t *face_cell, in
     }
 }
 
-/// Joins cells through open pieces at least `crack` wide, then those in the open that only cracks bound
-/// (needles), then seals the cracks that are left between different components. parent[cells] is the outside
-/// of the hull.
-static void join_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack,
-                       int32_t *parent, bool *walled) {
+static void join_through_all(const enf_complex *complex, const int32_t *face_cell, int32_t *parent) {
     int32_t outside = complex->cell_count, cell[2];
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         if (complex->piece_cover[p] != ENF_PIECE_OPEN) continue;
-        if (crack > 0 && enf_complex_piece_width(complex, p) < crack) continue;
         piece_cells(complex, face_cell, p, cell);
         enf_sets_unite(parent, cell[0] < 0 ? outside : cell[0], cell[1] < 0 ? outside : cell[1]);
     }
-    if (!(crack > 0)) return;
+}
+
+/// Joins cells through open pieces at least `crack` wide (gap.h), then those in the open that only cracks
+/// bound (needles) and those in gaps, then seals the cracks that are left between different components.
+/// parent: the cells, the outside of the hull, the pieces; walled: the same.
+static bool join_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack,
+                       int32_t *parent, bool *walled, bool *gap) {
+    int32_t outside = complex->cell_count, cell[2];
+    if (!(crack > 0)) {
+        join_through_all(complex, face_cell, parent);
+        return true;
+    }
+    if (!enf_gaps_join(complex, face_cell, crack, gap, parent)) return false;
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         piece_cells(complex, face_cell, p, cell);
         for (int side = 0; side < 2; side++) {
             bool wall = complex->piece_cover[p] != ENF_PIECE_OPEN;
-            if (wall && cell[side] >= 0) walled[enf_sets_find(parent, cell[side])] = true;
+            if (wall && cell[side] >= 0 && !gap[cell[side]]) walled[enf_sets_find(parent, cell[side])] = true;
         }
     }
     walled[enf_sets_find(parent, outside)] = true;
@@ -92,18 +101,21 @@ static void join_cells(enf_regions *regions, enf_complex *complex, const int32_t
         regions->sealed_area += sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
         complex->piece_cover[p] = ENF_PIECE_SEALED;
     }
+    return true;
 }
 
 /// Regions are the components over the pieces that are open now, numbered by their smallest cell.
 static bool colour_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack) {
     int32_t cells = complex->cell_count;
-    int32_t *parent = enf_array_new((size_t)cells + 1, sizeof *parent);
-    bool *walled = enf_array_zeroed((size_t)cells + 1, sizeof *walled);
+    size_t items = (size_t)cells + 1 + (size_t)complex->pieces.count;
+    int32_t *parent = items < INT32_MAX ? enf_array_new(items, sizeof *parent) : NULL;
+    bool *walled = enf_array_zeroed(items, sizeof *walled),
+         *gap = enf_array_zeroed((size_t)cells, sizeof *gap);
     regions->cell_region = enf_array_new((size_t)cells, sizeof *regions->cell_region);
-    bool good = parent && walled && regions->cell_region;
+    bool good = parent && walled && gap && regions->cell_region;
     if (good) {
-        enf_sets_start(parent, cells + 1);
-        join_cells(regions, complex, face_cell, crack, parent, walled);
+        enf_sets_start(parent, (int32_t)items);
+        good = join_cells(regions, complex, face_cell, crack, parent, walled, gap);
         enf_sets_start(parent, cells + 1);
         for (int32_t p = 0; p < complex->pieces.count; p++) {
             int32_t cell[2];
@@ -119,6 +131,7 @@ static bool colour_cells(enf_regions *regions, enf_complex *complex, const int32
     }
     free(parent);
     free(walled);
+    free(gap);
     return good;
 }
 
