@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CORNERS_MAX = 64 };
+enum { CORNERS_MAX = 64, PLACES_MAX = 256 };
 
 /// A wide open piece of a gap cell.
 typedef struct port {
@@ -138,24 +138,66 @@ static double outline_width(const outline *shape) {
 
 // ---- joining
 
-/// The ports of one cell.
-static void join_ports(const enf_complex *complex, const port *ports, size_t count, double crack,
-                       int32_t *parent) {
-    int32_t first_piece = complex->cell_count + 1;
+/// What is looked through: all ports, by cell.
+typedef struct layer {
+    const enf_complex *complex;
+    const int32_t *face_cell;
+    const bool *gap;
+    const port *ports;
+    size_t count;
+    double crack;
+} layer;
+
+/// A place on the way through a layer, straight along its thin direction: into a cell, through what is open
+/// of all pieces so far.
+typedef struct place {
+    int32_t cell, through;
+    outline open;
+} place;
+
+static size_t first_port(const layer *l, int32_t cell) {
+    size_t low = 0, high = l->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (l->ports[middle].cell < cell)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/// Unites the thick cell before `start` with those that a straight way leads to. What takes more than the
+/// most steps stays closed.
+static void look_through(const layer *l, port start, place stack[PLACES_MAX], int32_t *parent) {
+    const enf_complex *complex = l->complex;
     const enf_loops *pieces = &complex->pieces;
-    const double *origin = complex->vertex_position[pieces->corners[pieces->offset[ports[0].piece]].vertex];
+    const double *origin = complex->vertex_position[pieces->corners[pieces->offset[start.piece]].vertex];
     double axes[2][3];
-    choose_axes(complex, ports[0].cell, axes);
-    for (size_t i = 0; i < count; i++) {
-        outline one;
-        project(complex, ports[i].piece, origin, axes, &one);
-        for (size_t k = 0; k < i; k++) {
-            outline other, both = one;
-            project(complex, ports[k].piece, origin, axes, &other);
-            for (int e = 0; e < other.count && both.count > 0; e++)
-                clip(&both, other.at[e], other.at[(e + 1) % other.count]);
-            if (outline_width(&both) < crack) continue;
-            enf_sets_unite(parent, first_piece + ports[i].piece, first_piece + ports[k].piece);
+    int waiting = 1, outside = complex->cell_count;
+    int32_t cell[2];
+    piece_cells(complex, l->face_cell, start.piece, cell);
+    int32_t from = cell[0] == start.cell ? cell[1] : cell[0];
+    choose_axes(complex, start.cell, axes);
+    stack[0].cell = start.cell;
+    stack[0].through = start.piece;
+    project(complex, start.piece, origin, axes, &stack[0].open);
+    for (int steps = 0; waiting > 0 && steps < PLACES_MAX; steps++) {
+        place here = stack[--waiting];
+        for (size_t k = first_port(l, here.cell); k < l->count && l->ports[k].cell == here.cell; k++) {
+            int32_t piece = l->ports[k].piece;
+            if (piece == here.through) continue;
+            outline shape, both = here.open;
+            project(complex, piece, origin, axes, &shape);
+            for (int e = 0; e < shape.count && both.count > 0; e++)
+                clip(&both, shape.at[e], shape.at[(e + 1) % shape.count]);
+            if (outline_width(&both) < l->crack) continue;
+            piece_cells(complex, l->face_cell, piece, cell);
+            int32_t to = cell[0] == here.cell ? cell[1] : cell[0];
+            if (to < 0 || !l->gap[to])
+                enf_sets_unite(parent, from < 0 ? outside : from, to < 0 ? outside : to);
+            else if (waiting < PLACES_MAX)
+                stack[waiting++] = (place){to, piece, both};
         }
     }
 }
@@ -171,28 +213,30 @@ bool enf_gaps_join(const enf_complex *complex, const int32_t *face_cell, double 
     int32_t outside = complex->cell_count, cell[2];
     port *ports = NULL;
     size_t count = 0, capacity = 0;
+    place *stack = enf_array_new(PLACES_MAX, sizeof *stack);
+    bool good = stack != NULL;
     find_gaps(complex, face_cell, crack, gap);
-    for (int32_t p = 0; p < complex->pieces.count; p++) {
+    for (int32_t p = 0; p < complex->pieces.count && good; p++) {
         if (complex->piece_cover[p] != ENF_PIECE_OPEN || enf_complex_piece_width(complex, p) < crack)
             continue;
         piece_cells(complex, face_cell, p, cell);
-        for (int side = 0; side < 2; side++) {
-            if (cell[side] < 0 || !gap[cell[side]]) {
-                enf_sets_unite(parent, cell[side] < 0 ? outside : cell[side], outside + 1 + p);
-                continue;
-            }
-            if (!enf_array_reserve(ports, capacity, count + 1)) {
-                free(ports);
-                return false;
-            }
-            ports[count++] = (port){cell[side], p};
+        bool thin[2] = {cell[0] >= 0 && gap[cell[0]], cell[1] >= 0 && gap[cell[1]]};
+        if (!thin[0] && !thin[1])
+            enf_sets_unite(parent, cell[0] < 0 ? outside : cell[0], cell[1] < 0 ? outside : cell[1]);
+        for (int side = 0; side < 2 && good; side++) {
+            if (!thin[side]) continue;
+            good = enf_array_reserve(ports, capacity, count + 1);
+            if (good) ports[count++] = (port){cell[side], p};
         }
     }
-    if (count) qsort(ports, count, sizeof *ports, compare_ports);
-    for (size_t first = 0, end; first < count; first = end) {
-        for (end = first + 1; end < count && ports[end].cell == ports[first].cell;) end++;
-        join_ports(complex, ports + first, end - first, crack, parent);
+    if (good && count) qsort(ports, count, sizeof *ports, compare_ports);
+    layer l = {complex, face_cell, gap, ports, count, crack};
+    for (size_t k = 0; k < count && good; k++) {
+        piece_cells(complex, face_cell, ports[k].piece, cell);
+        int32_t before = cell[0] == ports[k].cell ? cell[1] : cell[0];
+        if (before < 0 || !gap[before]) look_through(&l, ports[k], stack, parent);
     }
     free(ports);
-    return true;
+    free(stack);
+    return good;
 }

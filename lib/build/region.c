@@ -107,14 +107,13 @@ static bool join_cells(enf_regions *regions, enf_complex *complex, const int32_t
 /// Regions are the components over the pieces that are open now, numbered by their smallest cell.
 static bool colour_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack) {
     int32_t cells = complex->cell_count;
-    size_t items = (size_t)cells + 1 + (size_t)complex->pieces.count;
-    int32_t *parent = items < INT32_MAX ? enf_array_new(items, sizeof *parent) : NULL;
-    bool *walled = enf_array_zeroed(items, sizeof *walled),
-         *gap = enf_array_zeroed((size_t)cells, sizeof *gap);
+    int32_t *parent = enf_array_new((size_t)cells + 1, sizeof *parent);
+    bool *walled = enf_array_zeroed((size_t)cells + 1, sizeof *walled);
+    bool *gap = enf_array_zeroed((size_t)cells, sizeof *gap);
     regions->cell_region = enf_array_new((size_t)cells, sizeof *regions->cell_region);
     bool good = parent && walled && gap && regions->cell_region;
     if (good) {
-        enf_sets_start(parent, (int32_t)items);
+        enf_sets_start(parent, cells + 1);
         good = join_cells(regions, complex, face_cell, crack, parent, walled, gap);
         enf_sets_start(parent, cells + 1);
         for (int32_t p = 0; p < complex->pieces.count; p++) {
