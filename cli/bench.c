@@ -12,6 +12,7 @@ static const cli_command benches[] = {
     {"levels", "DIR: compile every level in a folder; a row each", cli_bench_levels},
     {"cells", "DIR: soup to coloured cells against the Delaunay triangulation alone", cli_bench_cells},
     {"solid", "DIR: solid or air against the union of the brushes", cli_bench_solid},
+    {"recovery", "DIR: levels rotated and rounded, against themselves", cli_bench_recovery},
 };
 
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };

@@ -17,5 +17,7 @@ int cli_bench_cells(int argc, char **argv);
 
 /// Solid or air in every level of a folder, against the union of its brushes.
 int cli_bench_solid(int argc, char **argv);
+/// Every level in a folder as tools leave it: rotated, rounded; compared with itself.
+int cli_bench_recovery(int argc, char **argv);
 
 #endif

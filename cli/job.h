@@ -50,7 +50,7 @@ extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const
          CLI_LENGTH,                                                                                           \
          &(s).plane_tolerance,                                                                                 \
          "D",                                                                                                  \
-         "coordinates within D become equal; default: a tenth of --weld",                                      \
+         "how far points may move to be coplanar again; default 2e-7 of the diagonal",                         \
          NULL,                                                                                                 \
          false},                                                                                               \
     {                                                                                                          \

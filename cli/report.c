@@ -54,6 +54,10 @@ static void put_clean(enf_json *json, const enf_mesh *mesh) {
     enf_json_begin_object(json, "clean");
     enf_json_number(json, "weld", mesh->weld);
     enf_json_number(json, "plane_tolerance", mesh->plane_tolerance);
+    enf_json_text(json, "turn", enf_turn_outcome_name(mesh->turn_outcome));
+    enf_json_number(json, "aligned", mesh->aligned);
+    enf_json_bool(json, "flattened", mesh->flattened);
+    enf_json_whole(json, "lattices", mesh->lattices);
     enf_json_whole(json, "welded", (int64_t)mesh->welded);
     enf_json_whole(json, "triangulated", (int64_t)mesh->triangulated);
     enf_json_whole(json, "two_sided", (int64_t)mesh->two_sided);
@@ -223,7 +227,7 @@ void cli_report_verbose(const cli_job *job, FILE *out) {
     print_stage(out, "read", job->read_seconds, "");
     for (int i = 0; i < build->stage_count; i++) {
         const enf_stage_report *stage = &build->stages[i];
-        char what[160];
+        char what[200];
         snprintf(what, sizeof what, "%s%s", stage->ran ? "" : "skipped: ", stage->why);
         print_stage(out, stage->name, stage->seconds, what);
     }

@@ -7,6 +7,7 @@
 #include "format/read.h"
 #include "format/sections.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -58,7 +59,7 @@ static void every_array_comes_back_as_it_was(void **state) {
     for (int i = 0; i < enf_section_spec_count; i++) {
         const enf_section_spec *spec = &enf_section_specs[i];
         if (strcmp(spec->tag, "STRINGS") == 0 || strcmp(spec->tag, "PROVEN") == 0 ||
-            strcmp(spec->tag, "LEAK") == 0)
+            strcmp(spec->tag, "LEAK") == 0 || strcmp(spec->tag, "TURN") == 0)
             continue;
         int64_t count = enf_view_count(&view, spec->dimension);
         if (strcmp(spec->tag, "GROUP") && strcmp(spec->tag, "MATERIAL"))
@@ -139,12 +140,39 @@ static void neighbours_share_the_face_between_them(void **state) {
     assert_int_equal(hull, 6 * 4 * 2);
 }
 
+static void a_turn_is_kept_must_be_known_and_be_a_rotation(void **state) {
+    (void)state;
+    const enf_frame frame = {1, {0, 1, 2}, {1, 1, 1}, 1, true, {{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}};
+    fixture f;
+    size_t size;
+    fixture_make(&f, 2, &frame);
+    unsigned char *bytes = fixture_save(&f, &size);
+    enf_file_view view;
+    assert_int_equal(enf_file_read(&view, bytes, size, false, NULL), ENF_OK);
+    assert_non_null(view.turn);
+    assert_memory_equal(view.turn->rows, frame.turn, sizeof frame.turn);
+    for (uint32_t i = 0; i < view.header->section_count; i++)
+        assert_int_equal(view.sections[i].flags, strcmp(view.sections[i].tag, "TURN") == 0);
+    static const double wrong[] = {0.6000001, NAN, INFINITY, -0.6};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        enf_error error = {0};
+        memcpy(bytes + section_of(bytes, "TURN")->offset, &wrong[i], sizeof wrong[i]);
+        fixture_fix_checksums(bytes);
+        assert_int_equal(open_copy(bytes, size, &error), ENF_BAD_INPUT);
+        assert_non_null(strstr(error.text, "TURN"));
+    }
+    free(bytes);
+    fixture_free(&f);
+}
+
 static void portals_face_the_cell_they_lead_from(void **state) {
     (void)state;
-    const enf_frame frames[] = {{0.25, {0, 1, 2}, {1, 1, 1}, 1},
-                                {2, {1, 2, 0}, {-1, 1, -1}, 1},
-                                {1, {0, 1, 2}, {1, -1, 1}, -1},
-                                {1, {1, 0, 2}, {1, 1, 1}, -1}};
+    const enf_frame frames[] = {
+        {0.25, {0, 1, 2}, {1, 1, 1}, 1, false, {{0}}},
+        {2, {1, 2, 0}, {-1, 1, -1}, 1, false, {{0}}},
+        {1, {0, 1, 2}, {1, -1, 1}, -1, false, {{0}}},
+        {1, {1, 0, 2}, {1, 1, 1}, -1, false, {{0}}},
+        {1, {1, 2, 0}, {1, 1, -1}, -1, true, {{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}}};
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         fixture f;
         enf_image image;
@@ -498,6 +526,7 @@ int main(void) {
         cmocka_unit_test(the_same_world_gives_the_same_bytes),
         cmocka_unit_test(sections_are_aligned_and_padding_is_zero),
         cmocka_unit_test(neighbours_share_the_face_between_them),
+        cmocka_unit_test(a_turn_is_kept_must_be_known_and_be_a_rotation),
         cmocka_unit_test(portals_face_the_cell_they_lead_from),
         cmocka_unit_test(triangles_keep_the_inputs_corners_and_cells_list_what_they_see),
         cmocka_unit_test(every_changed_byte_is_noticed),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real levels: every shared Quake level compiles, passes every check, keeps its spawns, does not leak, and
+// Real levels: every shared Quake level compiles, passes every check, keeps its spawns, leaks nowhere, and
 // has the same regions whichever tetrahedralizer is used.
 #include "pipeline_fixture.h"
 
@@ -11,11 +11,13 @@
 
 #include <cmocka.h>
 
-/// No level has a hole: where e1m5 and e2m2 seem to, two brushes lie 1e-13 units apart, which is no way out.
+/// The brushes of e1m5 (100 and 105) and e2m2 (517, 577 and 581) touch along faces, where rounding leaves a
+/// layer of no thickness but tens of units wide. No level has a hole.
 static void check_leak(const enf_build *build, const char *name) {
-    if (!build->regions.leak) return;
-    fail_msg("%s: leaks from spawn %d, narrowest %.4g units wide", name, (int)build->regions.leak_spawn,
-             build->regions.leak_width * build->mesh.frame.step);
+    double step = build->mesh.frame.step;
+    if (build->regions.leak)
+        fail_msg("%s: leak from spawn %d, narrowest %.4g units wide", name, (int)build->regions.leak_spawn,
+                 build->regions.leak_width * step);
 }
 
 static void check_spawns(const enf_build *build, const char *name) {

@@ -294,6 +294,47 @@ static void a_crack_narrower_than_the_weld_distance_is_sealed(void **state) {
     }
 }
 
+/// A room under a slanting roof of six tiles that overlap, somehow, and whose corners lie up to `tear` off.
+static void add_torn_roof(enf_soup *soup, double tear, uint64_t *seed) {
+    static const double walls[5][4][3] = {{{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {0, 8, 0}},
+                                          {{0, 0, 0}, {0, 0, 12}, {8, 0, 12}, {8, 0, 0}},
+                                          {{8, 8, 0}, {8, 8, 12}, {0, 8, 12}, {0, 8, 0}},
+                                          {{0, 0, 0}, {0, 8, 0}, {0, 8, 12}, {0, 0, 12}},
+                                          {{8, 0, 0}, {8, 0, 12}, {8, 8, 12}, {8, 8, 0}}};
+    for (int q = 0; q < 5; q++) fixture_add_polygon(soup, 4, walls[q], "shell");
+    for (int tile = 0; tile < 6; tile++) {
+        double low[2] = {tile % 3 * 3 - 1, tile / 3 * 4 - 1}, high[2] = {low[0] + 4, low[1] + 6}, at[4][3];
+        for (int k = 0; k < 4; k++) {
+            for (int a = 0; a < 2; a++)
+                at[k][a] = ((k + (a == 0)) / 2 % 2 == (a == 0) ? high[a] : low[a]) +
+                           (double)(fixture_random(seed) >> 11) * 0x1p-54;
+            at[k][2] = 7 + at[k][0] / 7 + at[k][1] / 9 +
+                       tear * (2 * (double)(fixture_random(seed) >> 11) * 0x1p-53 - 1);
+        }
+        fixture_add_polygon(soup, 4, (const double(*)[3])at, "shell");
+    }
+    fixture_add_box(soup, (const double[]){-20, -20, 30}, (const double[]){-19, -19, 31}, "far");
+    fixture_add_box(soup, (const double[]){20, 20, -30}, (const double[]){21, 21, -212}, "far");
+    add_spawn(soup, 1, 1, 1);
+}
+
+static void a_thin_layer_between_overlapping_polygons_is_no_opening(void **state) {
+    (void)state;
+    uint64_t seed = 5;
+    print_message("seed %llu\n", (unsigned long long)seed);
+    for (int round = 0; round < 60; round++) {
+        enf_build build = {0};
+        add_torn_roof(&build.soup, round % 2 ? 1e-7 : 1e-10, &seed);
+        enf_build_options options = pipeline_options();
+        options.clean.weld = round % 2 ? 1e-6 : 1e-9;
+        options.clean.plane_tolerance = 0;
+        pipeline_build(&build, &options);
+        pipeline_check(&build);
+        if (build.regions.leak) fail_msg("round %d leaks", round);
+        enf_build_free(&build);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_inside_of_a_shell_is_air_and_its_furniture_rock),
@@ -308,6 +349,7 @@ int main(void) {
         cmocka_unit_test(a_hole_is_a_leak_and_the_path_goes_through_it),
         cmocka_unit_test(a_closed_room_does_not_leak),
         cmocka_unit_test(a_crack_narrower_than_the_weld_distance_is_sealed),
+        cmocka_unit_test(a_thin_layer_between_overlapping_polygons_is_no_opening),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

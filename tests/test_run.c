@@ -101,10 +101,12 @@ static void check_point(const opened *o, const int64_t at[3], int32_t hint) {
     assert_int_equal(place.kind, expected < 0 ? ENF_WORLD_OUTSIDE : (int)build->regions.kind[place.region]);
 }
 
-static const enf_frame frames[] = {{0.25, {0, 1, 2}, {1, 1, 1}, 1},
-                                   {0x1p-40, {1, 2, 0}, {-1, 1, -1}, 1},
-                                   {0x1p60, {2, 1, 0}, {1, 1, 1}, -1},
-                                   {1, {0, 1, 2}, {1, -1, 1}, -1}};
+static const enf_frame frames[] = {
+    {0.25, {0, 1, 2}, {1, 1, 1}, 1, false, {{0}}},
+    {0x1p-40, {1, 2, 0}, {-1, 1, -1}, 1, false, {{0}}},
+    {0x1p60, {2, 1, 0}, {1, 1, 1}, -1, false, {{0}}},
+    {1, {0, 1, 2}, {1, -1, 1}, -1, false, {{0}}},
+};
 
 static void random_points_are_found_where_they_are(void **state) {
     (void)state;
@@ -124,6 +126,34 @@ static void random_points_are_found_where_they_are(void **state) {
         }
         close_fixture(&o);
     }
+}
+
+/// Rounding may take a point across a wall that it lies on, so those are left out.
+static void a_turned_world_is_asked_in_the_users_coordinates(void **state) {
+    (void)state;
+    const enf_frame frame = {0.5, {1, 2, 0}, {-1, 1, -1},
+                             1,   true,      {{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}};
+    uint64_t seed = 6;
+    print_message("seed %llu\n", (unsigned long long)seed);
+    opened o = open_fixture(4, &frame);
+    int tested = 0;
+    for (int n = 0; n < 4000; n++) {
+        int64_t at[3];
+        for (int a = 0; a < 3; a++) at[a] = (int64_t)(next_random(&seed) % (20 * FINE_GRID)) - 2 * FINE_GRID;
+        int32_t here = locate_by_looking_everywhere(&o.fixture, at);
+        bool inside = true;
+        for (int k = 0; k < 6 && inside; k++) {
+            int64_t next[3] = {at[0], at[1], at[2]};
+            next[k / 2] += k % 2 ? 1 : -1;
+            inside = locate_by_looking_everywhere(&o.fixture, next) == here;
+        }
+        if (!inside) continue;
+        tested++;
+        check_point(&o, at, -1);
+        check_point(&o, at, (int32_t)(next_random(&seed) % (uint64_t)o.fixture.build.complex.cell_count));
+    }
+    assert_true(tested > 3000);
+    close_fixture(&o);
 }
 
 static void vertices_and_centres_are_found_where_they_are(void **state) {
@@ -152,7 +182,7 @@ static void vertices_and_centres_are_found_where_they_are(void **state) {
 /// outside.
 static void rounded_face_centres_are_never_outside(void **state) {
     (void)state;
-    const enf_frame frame = {0x1p-60, {1, 0, 2}, {1, 1, -1}, 1};
+    const enf_frame frame = {0x1p-60, {1, 0, 2}, {1, 1, -1}, 1, false, {{0}}};
     opened o = open_fixture(4, &frame);
     const enf_complex *c = &o.fixture.build.complex;
     for (int32_t i = 0; i < c->facet_count; i++) {
@@ -270,6 +300,7 @@ static void extreme_coordinates_do_not_overflow_the_predicate(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_points_are_found_where_they_are),
+        cmocka_unit_test(a_turned_world_is_asked_in_the_users_coordinates),
         cmocka_unit_test(vertices_and_centres_are_found_where_they_are),
         cmocka_unit_test(rounded_face_centres_are_never_outside),
         cmocka_unit_test(just_outside_the_hull_is_inside_and_further_out_is_not),

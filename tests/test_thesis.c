@@ -144,7 +144,7 @@ static void a_turned_cavern_has_the_same_seven_passages(void **state) {
     (void)state;
     enf_build plain, turned;
     build_world(&plain, "cavern", NULL, ENF_HEURISTIC_ASPECT, 6);
-    build_world(&turned, "cavern", "rotate=7,8,9", ENF_HEURISTIC_ASPECT, 6);
+    build_world(&turned, "cavern", "rotate=10,20,30", ENF_HEURISTIC_ASPECT, 6);
     assert_rooms_apart(&turned, 6, 6);
     assert_int_equal(turned.portals.opening_count, 7);
     for (int32_t a = 0; a < 7; a++) {

@@ -343,7 +343,7 @@ static void make_soup(fixture *f) {
 void fixture_make(fixture *f, int side, const enf_frame *frame) {
     memset(f, 0, sizeof *f);
     f->side = side;
-    f->build.mesh.frame = frame ? *frame : (enf_frame){0.25, {0, 1, 2}, {1, 1, 1}, 1};
+    f->build.mesh.frame = frame ? *frame : (enf_frame){0.25, {0, 1, 2}, {1, 1, 1}, 1, false, {{0}}};
     make_points(f);
     make_tetrahedra(f);
     make_facets(f);

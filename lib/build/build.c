@@ -66,8 +66,16 @@ static enf_status clean(kitchen *k) {
     enf_mesh *mesh = &k->build->mesh;
     enf_status status = enf_mesh_clean(mesh, &k->build->soup, &k->options->clean, k->error);
     if (status != ENF_OK) return status;
-    say(k, "%zu polygons kept, %zu lines rejected, %zu points welded, %zu polygons triangulated",
-        mesh->polygon_count, k->build->soup.rejected_count, mesh->welded, mesh->triangulated);
+    static const char *const turns[] = {
+        [ENF_TURN_OFF] = "no planes recovered: tolerance 0",
+        [ENF_TURN_ROUND] = "not turned: round coordinates",
+        [ENF_TURN_ALIGNED] = "not turned: axis-parallel already",
+        [ENF_TURN_NONE] = "not turned: no common axes",
+        [ENF_TURN_FOUND] = "turned to its own axes",
+    };
+    say(k, "%zu polygons kept, %zu lines rejected, %zu points welded, %zu polygons triangulated; %s",
+        mesh->polygon_count, k->build->soup.rejected_count, mesh->welded, mesh->triangulated,
+        turns[mesh->turn_outcome]);
     return ENF_OK;
 }
 

@@ -42,7 +42,7 @@ typedef struct enf_stage_report {
     const char *name;
     double seconds, cpu_seconds; ///< by the clock; of the processor, all threads together
     bool ran;
-    char why[120]; ///< why it was skipped, or what it skipped
+    char why[160]; ///< why it was skipped, or what it skipped
 } enf_stage_report;
 
 /// A compiled world, still in the builder's own form. Written to a file by format/write.h.

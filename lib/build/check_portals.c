@@ -3,6 +3,7 @@
 #include "build/check_rows.h"
 
 #include "base/array.h"
+#include "format/frame.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,10 +14,6 @@ static const double rounding = 0x1p-48;
 
 static double allowed_error(const enf_file_view *view) {
     return rounding * 0x1p53 * view->frame->step;
-}
-
-static void to_world(const enf_file_frame *frame, const double grid[3], double world[3]) {
-    for (int a = 0; a < 3; a++) world[frame->axis[a]] = frame->sign[a] * grid[a];
 }
 
 // ---------------------------------------------------------------------------------------------- pairs
@@ -98,10 +95,10 @@ static bool corners_match(const enf_file_view *view, const enf_file_portal_polyg
     double allowed = allowed_error(view);
     for (int32_t k = 0; k < loop->count; k++) {
         double at[3];
-        to_world(view->frame,
-                 view->vertex_position[loop->corners[backwards ? loop->count - 1 - k : k].vertex], at);
+        enf_view_to_world(
+            view, view->vertex_position[loop->corners[backwards ? loop->count - 1 - k : k].vertex], at);
         for (int i = 0; i < 3; i++) {
-            double off = at[i] * view->frame->step - view->portal_vertices[polygon->vertex_first + k][i];
+            double off = at[i] - view->portal_vertices[polygon->vertex_first + k][i];
             if (!(fabs(off) <= allowed)) return false;
         }
     }
@@ -114,7 +111,8 @@ static bool plane_matches(const enf_checker *checker, const enf_file_portal_poly
     const enf_file_view *view = checker->view;
     double allowed = 4 * allowed_error(view), normal[3], dot = 0, length = 0, size = 0;
     int8_t sign = checker->exact.plane_sign[loop->plane];
-    to_world(view->frame, checker->exact.class_near[checker->exact.plane_class[loop->plane]], normal);
+    enf_view_direction_to_world(view, checker->exact.class_near[checker->exact.plane_class[loop->plane]],
+                                normal);
     for (int i = 0; i < 3; i++) {
         dot += normal[i] * polygon->plane[i] * sign;
         length += normal[i] * normal[i];

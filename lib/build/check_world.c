@@ -3,6 +3,7 @@
 #include "build/check_rows.h"
 
 #include "base/array.h"
+#include "format/frame.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -82,6 +83,40 @@ static double piece_width(const enf_checker *checker, const enf_check_loop *loop
     return width * checker->exact.unit;
 }
 
+/// Is the fine cell (-1: none) a layer thinner than `thin` grid steps: volume against half the surface, or a
+/// needle? From rounded corners.
+static bool is_layer(const enf_checker *checker, int32_t cell, double thin) {
+    const enf_file_view *view = checker->view;
+    double volume = 0, surface = 0, size = 0;
+    const double *apex = NULL;
+    for (int32_t i = cell < 0 ? 0 : view->fine_facet[cell]; cell >= 0 && i < view->fine_facet[cell + 1];
+         i++) {
+        int32_t f = view->fine_facets[i];
+        const enf_file_corner *corners = view->facet_corners + view->facet_offset[f];
+        int64_t count = view->facet_offset[f + 1] - view->facet_offset[f];
+        const double *first = view->vertex_position[corners[0].vertex];
+        double area[3] = {0, 0, 0};
+        if (!apex) apex = first;
+        for (int64_t k = 1; k < count; k++) {
+            const double *p = view->vertex_position[corners[k].vertex],
+                         *q = view->vertex_position[corners[(k + 1) % count].vertex];
+            double square = 0;
+            for (int a = 0; a < 3; a++) {
+                int b = (a + 1) % 3, c = (a + 2) % 3;
+                area[a] +=
+                    ((p[b] - first[b]) * (q[c] - first[c]) - (p[c] - first[c]) * (q[b] - first[b])) / 2;
+                square += (p[a] - apex[a]) * (p[a] - apex[a]);
+            }
+            size = fmax(size, sqrt(square));
+        }
+        double height = 0;
+        for (int a = 0; a < 3; a++) height += area[a] * (first[a] - apex[a]) / 3;
+        volume += view->facet_fine[f][1] == cell ? -height : height;
+        surface += sqrt(area[0] * area[0] + area[1] * area[1] + area[2] * area[2]);
+    }
+    return cell >= 0 && (2 * volume <= thin * surface || surface <= thin * 2 * size);
+}
+
 /// Widths come from rounded corners (and lose half their digits in the subtraction): two grid steps, and
 /// 2^-24 of the piece's size, are allowed.
 static bool check_seal(enf_checker *checker, int32_t piece, int32_t facet, double crack) {
@@ -99,15 +134,18 @@ static bool check_seal(enf_checker *checker, int32_t piece, int32_t facet, doubl
         for (int a = 0; a < 3; a++)
             size = fmax(size, fabs(checker->exact.near[loop.corners[k].vertex][a] - p[a]));
     }
-    if (piece_width(checker, &loop) <= crack + 2 + 0x1p-24 * size * checker->exact.unit) return true;
-    return enf_check_break(checker, "piece %d is sealed, though it is wider than the weld distance",
-                           (int)piece);
+    double allowed = crack + 2 + 0x1p-24 * size * checker->exact.unit;
+    if (piece_width(checker, &loop) <= allowed) return true;
+    for (int side = 0; side < 2; side++)
+        if (is_layer(checker, fine[side], allowed)) return true;
+    return enf_check_break(checker, "piece %d is sealed, though it is wider than the tolerance", (int)piece);
 }
 
 static void check_seals(enf_checker *checker) {
     const enf_file_view *view = checker->view;
-    enf_check_begin(checker, "colour: seals",
-                    "only cracks between two regions, narrower than the tolerance, are sealed");
+    enf_check_begin(
+        checker, "colour: seals",
+        "only cracks between two regions, narrower than the tolerance, and layers thinner are sealed");
     double crack = fmax(view->frame->weld, view->frame->plane_tolerance) / view->frame->step;
     int64_t sealed = 0;
     for (int32_t f = 0; f < view->facet_count; f++) {
@@ -298,8 +336,8 @@ static bool check_spawn(enf_checker *checker, int32_t s) {
     const enf_file_view *view = checker->view;
     const enf_file_spawn *spawn = &view->spawns[s];
     double grid[3];
-    for (int a = 0; a < 3; a++)
-        grid[a] = rint(view->frame->sign[a] * spawn->position[view->frame->axis[a]] / view->frame->step);
+    enf_view_to_grid(view, spawn->position, grid);
+    for (int a = 0; a < 3; a++) grid[a] = rint(grid[a]);
     if (spawn->fine_cell < 0) {
         if (spawn->cell < 0 && outside_hull(checker, grid)) return true;
         return enf_check_break(checker, "spawn %d lies in the hull, but has no fine cell", (int)s);
@@ -393,14 +431,12 @@ static void check_connected(enf_checker *checker) {
 
 static bool box_holds_facet(enf_checker *checker, int32_t fine, int32_t facet, double allowed) {
     const enf_file_view *view = checker->view;
-    const enf_file_frame *frame = view->frame;
     const enf_file_cell *cell = &view->cells[view->fine_cell[fine]];
     for (int64_t c = view->facet_offset[facet]; c < view->facet_offset[facet + 1]; c++) {
-        const double *at = view->vertex_position[view->facet_corners[c].vertex];
+        double world[3];
+        enf_view_to_world(view, view->vertex_position[view->facet_corners[c].vertex], world);
         for (int a = 0; a < 3; a++) {
-            int axis = frame->axis[a];
-            double x = frame->sign[a] * at[a] * frame->step;
-            if (x < cell->box_min[axis] - allowed || x > cell->box_max[axis] + allowed)
+            if (world[a] < cell->box_min[a] - allowed || world[a] > cell->box_max[a] + allowed)
                 return enf_check_break(checker, "fine cell %d reaches out of the box of cell %d", (int)fine,
                                        (int)view->fine_cell[fine]);
         }

@@ -3,16 +3,22 @@
 //   1 judge      polygons of excluded groups and with corners that are missing, not finite or beyond 1e100
 //   go;
 //                polygons of detail groups are set aside
-//   2 frame      the canonical axes and the grid step follow from the points (and polygons) in use (frame.c)
-//   3 round      every point to the nearest grid point
-//   4 weld       points within `weld` of an earlier one, in grid order, join it (default 1e-9 of the diagonal
-//   of the
-//                points' box; weld.c)
-//   5 flatten    coordinates within `plane_tolerance` share one value, per axis (default a tenth of `weld`)
-//   6 polygons   repeated and collinear corners go; what is planar and convex stays whole, the rest becomes
+//   2 turn       a world that a rotation has touched is turned back, so that most of its area is
+//   axis-parallel
+//                (turn.c)
+//   3 flatten    axis-parallel planes that rounding has torn become planes again (flatten.c). Turned or not,
+//   no
+//                point is more than `plane_tolerance` from where it was (default 2e-7 of the diagonal of the
+//                points' box, more than single precision takes from a world around its origin)
+//   4 frame      the canonical axes and the grid step follow from the points (and polygons) in use (frame.c)
+//   5 round      every point to the nearest grid point
+//   6 weld       points within `weld` of an earlier one, in grid order, join it (default 1e-9 of the
+//   diagonal;
+//                weld.c)
+//   7 polygons   repeated and collinear corners go; what is planar and convex stays whole, the rest becomes
 //                triangles (ring.c, triangulate.c)
-//   7 duplicates of polygons with the same corners in the same order one stays
-//   8 order      points and polygons are numbered by their coordinates
+//   8 duplicates of polygons with the same corners in the same order one stays
+//   9 order      points and polygons are numbered by their coordinates
 // Everything after step 1 depends on the set of polygons only, not on their order or on where their lists
 // begin.
 #include "build/clean.h"
@@ -20,6 +26,7 @@
 #include "base/array.h"
 #include "build/frame.h"
 #include "build/pieces.h"
+#include "build/recover.h"
 #include "build/ring.h"
 #include "build/triangulate.h"
 #include "build/weld.h"
@@ -29,8 +36,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEFAULT_WELD 1e-9   ///< of the diagonal of the bounding box
-#define DEFAULT_FLATTEN 0.1 ///< of the welding distance: a point moved by it opens no gap that is not a crack
 #define LARGEST_COORDINATE 1e100 ///< volumes and their sums stay finite
 
 enum { CUTS, IS_DETAIL, IS_EXCLUDED };
@@ -45,7 +50,7 @@ typedef struct cleaner {
     size_t cutting_count;
 
     int32_t *final_of; ///< per soup point: its point in `points`, or -1
-    double *points;    ///< grid points after step 5, in order
+    double *points;    ///< grid points after step 6, in order
     size_t point_count;
 
     enf_pieces pieces;
@@ -135,7 +140,7 @@ static enf_status judge_polygons(cleaner *c) {
     return ENF_OK;
 }
 
-// ---- steps 2 to 5: points
+// ---- steps 2 to 6: points
 
 /// Sets final_of to 0, 1, ... for the points that the cutting polygons use. Returns their number.
 static size_t number_used_points(cleaner *c) {
@@ -185,72 +190,79 @@ static size_t weld(cleaner *c, enf_site *sites, size_t count, double distance, i
     return kept;
 }
 
-static double diagonal(const enf_site *sites, size_t count) {
-    double sum = 0;
-    for (int a = 0; a < 3 && count; a++) {
-        double low = sites[0].at[a], high = low;
-        for (size_t i = 1; i < count; i++) low = fmin(low, sites[i].at[a]), high = fmax(high, sites[i].at[a]);
-        sum += (high - low) * (high - low);
-    }
-    return sqrt(sum);
-}
-
 /// How far the used points moved, in all, in world units.
 static void measure_displacement(cleaner *c) {
+    const enf_frame *frame = &c->mesh->frame;
     double largest = 0, sum = 0;
     size_t used = 0;
     for (size_t p = 0; p < c->soup->point_count; p++) {
         if (c->final_of[p] < 0) continue;
-        double exact[3], square = 0;
-        const double *final = &c->points[3 * (size_t)c->final_of[p]];
-        enf_frame_to_grid(&c->mesh->frame, &c->soup->points[3 * p], exact);
-        for (int a = 0; a < 3; a++) square += (exact[a] - final[a]) * (exact[a] - final[a]);
+        double world[3], square = 0;
+        enf_frame_to_world(frame, &c->points[3 * (size_t)c->final_of[p]], world);
+        for (int a = 0; a < 3; a++) {
+            double moved = (world[a] - c->soup->points[3 * p + (size_t)a]) / frame->step;
+            square += moved * moved;
+        }
         largest = fmax(largest, square);
         sum += sqrt(square);
         used++;
     }
-    c->mesh->displacement_max = sqrt(largest) * c->mesh->frame.step;
-    c->mesh->displacement_mean = used ? sum / (double)used * c->mesh->frame.step : 0;
+    c->mesh->displacement_max = sqrt(largest) * frame->step;
+    c->mesh->displacement_mean = used ? sum / (double)used * frame->step : 0;
+}
+
+static void take_points(enf_site *sites, const double *points, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        sites[i].id = (int32_t)i;
+        for (int a = 0; a < 3; a++) sites[i].at[a] = points[3 * i + (size_t)a] + 0.0; // -0 becomes 0
+    }
+}
+
+static void give_points(const enf_site *sites, double *points, size_t count) {
+    for (size_t i = 0; i < count; i++) memcpy(&points[3 * i], sites[i].at, sizeof sites[i].at);
+}
+
+/// Steps 2 to 4; `distinct` is room for the points.
+static enf_status settle_frame(cleaner *c, enf_site *sites, size_t *count, double *distinct,
+                               int32_t *scratch) {
+    enf_frame_rings rings = {c->soup, c->cutting, c->cutting_count, c->final_of};
+    give_points(sites, distinct, *count);
+    enf_tolerances_choose(c->mesh, c->options, distinct, *count);
+    bool changed = false;
+    enf_status status = enf_planes_recover(c->mesh, distinct, *count, &rings, &changed, c->error);
+    if (status != ENF_OK) return status;
+    if (changed) {
+        take_points(sites, distinct, *count);
+        *count = unite(c, sites, *count, scratch);
+        give_points(sites, distinct, *count);
+    }
+    enf_frame_choose(&c->mesh->frame, distinct, *count, &rings);
+    return ENF_OK;
 }
 
 static void round_to_grid(const enf_frame *frame, enf_site *sites, size_t count) {
+    enf_frame untilted = *frame; // the sites have been turned
+    untilted.is_turned = false;
     for (size_t i = 0; i < count; i++) {
         double grid[3];
-        enf_frame_to_grid(frame, sites[i].at, grid);
+        enf_frame_to_grid(&untilted, sites[i].at, grid);
         for (int a = 0; a < 3; a++) sites[i].at[a] = nearbyint(grid[a]) + 0.0; // -0 becomes 0
     }
 }
 
-/// Sets the tolerances that are used; returns the welding distance in grid steps.
-static double choose_tolerances(cleaner *c, const enf_site *sites, size_t count) {
-    enf_mesh *mesh = c->mesh;
-    double distance = DEFAULT_WELD * diagonal(sites, count);
-    mesh->weld = c->options->weld < 0 ? distance * mesh->frame.step : c->options->weld;
-    mesh->plane_tolerance =
-        c->options->plane_tolerance < 0 ? DEFAULT_FLATTEN * mesh->weld : c->options->plane_tolerance;
-    return c->options->weld < 0 ? distance : c->options->weld / mesh->frame.step;
-}
-
-/// Steps 2 to 5 on the sites; returns how many are left.
+/// Steps 2 to 6 on the sites; returns how many are left.
 static size_t settle_sites(cleaner *c, enf_site *sites, size_t count, int32_t *scratch[2],
                            enf_status *status) {
     count = unite(c, sites, count, scratch[0]);
     size_t different = count;
     double *distinct = enf_array_new(count, 3 * sizeof *distinct);
-    if (!distinct) {
-        *status = enf_fail_memory(c->error, "the points");
-        return 0;
-    }
-    for (size_t i = 0; i < count; i++) memcpy(&distinct[3 * i], sites[i].at, sizeof sites[i].at);
-    enf_frame_rings rings = {c->soup, c->cutting, c->cutting_count, c->final_of};
-    enf_frame_choose(&c->mesh->frame, distinct, count, &rings);
+    *status = distinct ? settle_frame(c, sites, &count, distinct, scratch[0])
+                       : enf_fail_memory(c->error, "the points");
     free(distinct);
+    if (*status != ENF_OK) return 0;
     round_to_grid(&c->mesh->frame, sites, count);
     count = unite(c, sites, count, scratch[0]);
-    double distance = choose_tolerances(c, sites, count);
-    count = weld(c, sites, count, distance, scratch[0], scratch[1], status);
-    if (*status == ENF_OK)
-        *status = enf_sites_flatten(sites, count, c->mesh->plane_tolerance / c->mesh->frame.step, c->error);
+    count = weld(c, sites, count, c->mesh->weld / c->mesh->frame.step, scratch[0], scratch[1], status);
     if (*status != ENF_OK) return 0;
     count = unite(c, sites, count, scratch[0]);
     c->mesh->welded = different - count;
@@ -291,7 +303,7 @@ static enf_status settle_points(cleaner *c) {
     return status;
 }
 
-// ---- step 6: polygons
+// ---- step 7: polygons
 
 /// Lays the polygon's corners into the scratch ring, turned over if the frame is a mirror.
 static bool load_ring(cleaner *c, size_t polygon, size_t *count) {
@@ -359,7 +371,7 @@ static enf_status clean_polygons(cleaner *c) {
     return status;
 }
 
-// ---- steps 7 and 8: duplicates and order
+// ---- steps 8 and 9: duplicates and order
 
 /// A polygon of which no piece stayed is a duplicate of others.
 static enf_status reject_duplicates(cleaner *c, const int32_t *order, size_t kept) {

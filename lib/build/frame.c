@@ -170,7 +170,11 @@ static void choose_candidate(enf_frame *frame, const enf_frame *candidates, int 
         uint64_t ring_hash = ties > 1 ? hash_rings(&candidates[c], points, rings) : 0;
         if (best < 0 || ring_hash < least_ring) best = c, least_ring = ring_hash;
     }
-    *frame = candidates[best < 0 ? 0 : best];
+    const enf_frame *chosen = &candidates[best < 0 ? 0 : best];
+    frame->step = chosen->step;
+    frame->handedness = chosen->handedness;
+    memcpy(frame->axis, chosen->axis, sizeof frame->axis);
+    memcpy(frame->sign, chosen->sign, sizeof frame->sign);
 }
 
 void enf_frame_choose(enf_frame *frame, const double *points, size_t count, const enf_frame_rings *rings) {
@@ -183,12 +187,25 @@ void enf_frame_choose(enf_frame *frame, const double *points, size_t count, cons
     choose_candidate(frame, candidates, candidate_count, points, count, rings);
 }
 
+void enf_frame_direction_to_world(const enf_frame *frame, const double grid[3], double world[3]) {
+    double at[3] = {grid[0], grid[1], grid[2]}, turned[3];
+    for (int a = 0; a < 3; a++) turned[frame->axis[a]] = frame->sign[a] * at[a];
+    for (int a = 0; a < 3; a++)
+        world[a] = frame->is_turned ? frame->turn[0][a] * turned[0] + frame->turn[1][a] * turned[1] +
+                                          frame->turn[2][a] * turned[2]
+                                    : turned[a];
+}
+
 void enf_frame_to_world(const enf_frame *frame, const double grid[3], double world[3]) {
-    double at[3] = {grid[0], grid[1], grid[2]};
-    for (int a = 0; a < 3; a++) world[frame->axis[a]] = frame->sign[a] * at[a] * frame->step;
+    enf_frame_direction_to_world(frame, grid, world);
+    for (int a = 0; a < 3; a++) world[a] *= frame->step;
 }
 
 void enf_frame_to_grid(const enf_frame *frame, const double world[3], double grid[3]) {
-    double at[3] = {world[0], world[1], world[2]};
-    for (int a = 0; a < 3; a++) grid[a] = frame->sign[a] * at[frame->axis[a]] / frame->step;
+    double at[3] = {world[0], world[1], world[2]}, turned[3];
+    for (int a = 0; a < 3; a++) {
+        const double *row = frame->turn[a];
+        turned[a] = frame->is_turned ? row[0] * at[0] + row[1] * at[1] + row[2] * at[2] : at[a];
+    }
+    for (int a = 0; a < 3; a++) grid[a] = frame->sign[a] * turned[frame->axis[a]] / frame->step;
 }

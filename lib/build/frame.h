@@ -17,7 +17,8 @@ typedef struct enf_frame_rings {
 } enf_frame_rings;
 
 /// `points`: xyz of `count` different points, |x| <= 1e100, in any order; count may be 0. The polygons are
-/// only looked at where the set of points is symmetric.
+/// only looked at where the set of points is symmetric. The frame's turn is left as it is: the points have
+/// been turned by it.
 void enf_frame_choose(enf_frame *frame, const double *points, size_t count, const enf_frame_rings *rings);
 
 #endif

@@ -3,6 +3,7 @@
 #include "build/plan.h"
 
 #include "base/array.h"
+#include "format/frame.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -29,8 +30,7 @@ void enf_plan_free(enf_plan *plan) {
 }
 
 void enf_plan_grid_to_world(const enf_file_view *view, const double grid[3], double world[3]) {
-    const enf_file_frame *frame = view->frame;
-    for (int a = 0; a < 3; a++) world[frame->axis[a]] = frame->sign[a] * grid[a] * frame->step;
+    enf_view_to_world(view, grid, world);
 }
 
 double enf_plan_project(const enf_plan *plan, const double world[3], double page[2]) {

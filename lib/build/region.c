@@ -8,14 +8,16 @@
 //   air      otherwise. A spawn point makes its region air (or outside, with a leak) whatever the polygons
 //   say.
 // Rounded coordinates leave hairline cracks between polygons that once met. An opening narrower than the weld
-// distance does not join two regions: where nothing wider joins them either, it is sealed (and reported);
-// inside a region such slivers stay open, so no sight line is lost.
+// distance (or the plane tolerance) does not join two regions, nor does a layer that is thinner (gap.h):
+// where nothing wider joins them either, it is sealed (and reported); inside a region such slivers stay open,
+// so no sight line is lost.
 // --keep auto keeps the regions with spawn points; without any, every air region; if there is none, the
 // outside.
 #include "build/region.h"
 
 #include "base/array.h"
 #include "base/sets.h"
+#include "build/gap.h"
 #include "build/leak.h"
 #include "build/region_size.h"
 #include "build/spawn.h"
@@ -69,24 +71,26 @@ static bool is_crack(const enf_complex *complex, int32_t piece, double crack) {
 
 enum { WALL = 1, TO_OUTSIDE = 2 }; ///< what a cell has: an occluded piece, an open piece of the hull
 
-/// The open pieces narrower than a crack, ascending.
+/// The open pieces that are narrower than a crack, or at a gap (gap.h), ascending.
 typedef struct crack_list {
     int32_t *pieces;
     size_t count, capacity;
 } crack_list;
 
-/// Joins cells through open pieces that are no cracks and lists the cracks. False without memory.
-static bool join_cells(const enf_complex *complex, double crack, int32_t *parent, uint8_t *has,
-                       crack_list *cracks) {
+/// Joins cells through open pieces that are no cracks and not at a gap, and lists the others. False without
+/// memory.
+static bool join_cells(const enf_complex *complex, double crack, const bool *gap, int32_t *parent,
+                       uint8_t *has, crack_list *cracks) {
     for (int32_t p = 0; p < complex->pieces.count; p++) {
         const int32_t *cell = enf_complex_piece_cells(complex, p);
         bool inner = cell[0] >= 0 && cell[1] >= 0;
+        bool at_gap = (cell[0] >= 0 && gap[cell[0]]) || (cell[1] >= 0 && gap[cell[1]]);
         if (complex->piece_cover[p] != ENF_PIECE_OPEN) {
             for (int side = 0; side < 2; side++)
                 if (cell[side] >= 0) has[cell[side]] |= WALL;
         } else if (inner && enf_sets_find(parent, cell[0]) == enf_sets_find(parent, cell[1])) {
             continue; // joined already; whether this is a crack does not matter
-        } else if (crack > 0 && is_crack(complex, p, crack)) {
+        } else if (at_gap || (crack > 0 && is_crack(complex, p, crack))) {
             if (!enf_array_reserve(cracks->pieces, cracks->capacity, cracks->count + 1)) return false;
             cracks->pieces[cracks->count++] = p;
         } else if (inner) {
@@ -98,8 +102,8 @@ static bool join_cells(const enf_complex *complex, double crack, int32_t *parent
     return true;
 }
 
-/// Opens the cracks to components that only cracks bound (needles), then seals those that are left between
-/// different components. `joined` is over the cells and, as the last, the outside of the hull.
+/// Opens the cracks to components that only cracks bound (needles, and gaps), then seals those that are left
+/// between different components. `joined` is over the cells and, as the last, the outside of the hull.
 static void judge_cracks(enf_regions *regions, enf_complex *complex, const crack_list *cracks,
                          int32_t *joined, bool *walled) {
     int32_t outside = complex->cell_count;
@@ -126,8 +130,8 @@ static void judge_cracks(enf_regions *regions, enf_complex *complex, const crack
 }
 
 /// Decides which cracks are sealed, and joins cells through the others. `parent` is as join_cells leaves it.
-static bool seal_cracks(enf_regions *regions, enf_complex *complex, const crack_list *cracks, int32_t *parent,
-                        const uint8_t *has) {
+static bool seal_cracks(enf_regions *regions, enf_complex *complex, double crack, const bool *gap,
+                        const crack_list *cracks, int32_t *parent, const uint8_t *has) {
     if (cracks->count == 0) return true;
     int32_t outside = complex->cell_count;
     int32_t *joined = enf_array_new((size_t)outside + 1, sizeof *joined);
@@ -138,8 +142,9 @@ static bool seal_cracks(enf_regions *regions, enf_complex *complex, const crack_
         joined[outside] = outside;
         for (int32_t c = 0; c < outside; c++)
             if (has[c] & TO_OUTSIDE) enf_sets_unite(joined, c, outside);
+        good = enf_gaps_join(complex, crack, gap, cracks->pieces, cracks->count, joined);
         for (int32_t c = 0; c < outside; c++)
-            if (has[c] & WALL) walled[enf_sets_find(joined, c)] = true;
+            if (has[c] & WALL && !gap[c]) walled[enf_sets_find(joined, c)] = true;
         walled[enf_sets_find(joined, outside)] = true;
         judge_cracks(regions, complex, cracks, joined, walled);
     }
@@ -158,14 +163,16 @@ static bool colour_cells(enf_regions *regions, enf_complex *complex, double crac
     int32_t cells = complex->cell_count;
     int32_t *parent = enf_array_new((size_t)cells, sizeof *parent);
     uint8_t *has = enf_array_zeroed((size_t)cells, sizeof *has);
+    bool *gap = enf_array_zeroed((size_t)cells, sizeof *gap);
     crack_list cracks = {0};
-    bool good = parent && has;
+    bool good = parent && has && gap && (!(crack > 0) || enf_gaps_find(complex, crack, gap));
     if (good) {
         enf_sets_start(parent, cells);
-        good = join_cells(complex, crack, parent, has, &cracks) &&
-               seal_cracks(regions, complex, &cracks, parent, has);
+        good = join_cells(complex, crack, gap, parent, has, &cracks) &&
+               seal_cracks(regions, complex, crack, gap, &cracks, parent, has);
     }
     free(has);
+    free(gap);
     free(cracks.pieces);
     regions->cell_region = parent; // every link leads to a smaller cell, which has its region by then
     for (int32_t c = 0; good && c < cells; c++)

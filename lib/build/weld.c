@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Welding by a hash grid over the representatives; flattening by a walk over sorted coordinates.
+// Welding by a hash grid over the representatives.
 #include "build/weld.h"
 
 #include "base/array.h"
@@ -120,39 +120,4 @@ enf_status enf_sites_weld(const enf_site *sites, size_t count, double distance, 
     free(grid.tail);
     free(grid.next);
     return status;
-}
-
-static int compare_doubles(const void *left, const void *right) {
-    double a = *(const double *)left, b = *(const double *)right;
-    return (a > b) - (a < b);
-}
-
-/// The value that `x` takes: the last cluster's first value that is not above it.
-static double cluster_of(const double *firsts, size_t count, double x) {
-    size_t low = 0, high = count;
-    while (high - low > 1) {
-        size_t middle = low + (high - low) / 2;
-        if (firsts[middle] <= x)
-            low = middle;
-        else
-            high = middle;
-    }
-    return firsts[low];
-}
-
-enf_status enf_sites_flatten(enf_site *sites, size_t count, double tolerance, enf_error *error) {
-    if (tolerance < 1 || count == 0) return ENF_OK;
-    double *values = enf_array_new(count, sizeof *values);
-    if (!values) return enf_fail_memory(error, "the planes");
-    for (int axis = 0; axis < 3; axis++) {
-        for (size_t i = 0; i < count; i++) values[i] = sites[i].at[axis];
-        qsort(values, count, sizeof *values, compare_doubles);
-        size_t clusters = 1;
-        for (size_t i = 1; i < count; i++)
-            if (values[i] - values[clusters - 1] > tolerance) values[clusters++] = values[i];
-        for (size_t i = 0; i < count; i++)
-            sites[i].at[axis] = cluster_of(values, clusters, sites[i].at[axis]);
-    }
-    free(values);
-    return ENF_OK;
 }

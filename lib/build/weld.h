@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Making near points one: welding by distance, and pulling coordinates onto common axis-parallel planes.
+// Making near points one.
 #ifndef ENF_BUILD_WELD_H
 #define ENF_BUILD_WELD_H
 
@@ -23,9 +23,5 @@ size_t enf_sites_unite(enf_site *sites, size_t count, int32_t *group_of);
 /// The result depends on the set of points only, and no point moves by more than `distance`.
 enf_status enf_sites_weld(const enf_site *sites, size_t count, double distance, int32_t *joined_to,
                           enf_error *error);
-
-/// Per axis: walking up the different coordinates, one within `tolerance` of the first of its cluster takes
-/// that one's value. This recovers the axis-parallel planes that an exporter's rounding has torn apart.
-enf_status enf_sites_flatten(enf_site *sites, size_t count, double tolerance, enf_error *error);
 
 #endif

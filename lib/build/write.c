@@ -123,7 +123,7 @@ static bool fill_empty(enf_file_view *view) {
     static const double nothing[1] = {0}; // also the one offset of an empty offsets array
     for (int i = 0; i < enf_section_spec_count; i++) {
         const enf_section_spec *spec = &enf_section_specs[i];
-        if (enf_view_array(view, spec) || spec->part == ENF_PART_OPTIONAL) continue;
+        if (enf_view_array(view, spec) || spec->part >= ENF_PART_OPTIONAL) continue;
         if (enf_view_count(view, spec->dimension) != 0) return false;
         enf_view_set_array(view, spec, nothing);
     }
@@ -201,6 +201,12 @@ static enf_status make_frame(enf_image *image, const enf_build *build, enf_error
         out->sign[a] = frame->sign[a];
     }
     out->handedness = frame->handedness;
+    if (frame->is_turned) {
+        enf_file_turn *turn = enf_image_new(image, 1, sizeof *turn);
+        if (!turn) return enf_fail_memory(error, "the frame");
+        memcpy(turn->rows, frame->turn, sizeof turn->rows);
+        image->view.turn = turn;
+    }
     empty_box(out->box_min, out->box_max);
     for (int32_t i = 0; i < image->view.point_count; i++) {
         double world[3];
@@ -343,8 +349,8 @@ static void world_normal(const enf_build *build, int32_t plane, double normal[3]
     double length = 0;
     for (int a = 0; a < 3 && largest > 0; a++) length += (grid[a] / largest) * (grid[a] / largest);
     length = sqrt(length) * largest;
-    const enf_frame *frame = &build->mesh.frame;
-    for (int a = 0; a < 3; a++) normal[frame->axis[a]] = length > 0 ? frame->sign[a] * (grid[a] / length) : 0;
+    for (int a = 0; a < 3; a++) grid[a] = length > 0 ? grid[a] / length : 0;
+    enf_frame_direction_to_world(&build->mesh.frame, grid, normal);
 }
 
 typedef struct portal_writer {
@@ -391,6 +397,18 @@ static void add_portal_polygon(portal_writer *writer, int32_t loop, int directio
     }
 }
 
+/// A turn rounds the corners, so the sphere has to be made for them.
+static void grow_sphere(const portal_writer *writer, enf_file_portal *portal, int32_t first) {
+    for (int32_t k = first; k < writer->vertex_count; k++) {
+        double square = 0;
+        for (int a = 0; a < 3; a++) {
+            double d = writer->vertices[k][a] - portal->centre[a];
+            square += d * d;
+        }
+        portal->radius = fmax(portal->radius, sqrt(square) * (1 + 0x1p-48));
+    }
+}
+
 static void add_opening(portal_writer *writer, int32_t opening) {
     const enf_portals *portals = &writer->build->portals;
     int32_t first = portals->opening_polygon[opening], end = portals->opening_polygon[opening + 1];
@@ -402,7 +420,9 @@ static void add_opening(portal_writer *writer, int32_t opening) {
         out->polygon_count = end - first;
         enf_frame_to_world(&writer->build->mesh.frame, portals->opening_centre[opening], out->centre);
         out->radius = portals->opening_radius[opening] * writer->build->mesh.frame.step;
+        int32_t vertex = writer->vertex_count;
         for (int32_t loop = first; loop < end; loop++) add_portal_polygon(writer, loop, direction);
+        if (writer->build->mesh.frame.is_turned) grow_sphere(writer, out, vertex);
     }
 }
 

@@ -9,6 +9,7 @@
 #include "format/locate.h"
 
 #include "base/exact.h"
+#include "format/frame.h"
 
 #include <math.h>
 
@@ -189,8 +190,10 @@ enf_place enf_view_locate(const enf_file_view *view, const double point[3], int3
     const enf_file_frame *frame = view->frame;
     const enf_place nowhere = {-1, -1, -1, -1, ENF_WORLD_OUTSIDE};
     query query = {.view = view, .best = -1, .best_tetrahedron = -1};
+    double turned[3];
+    enf_view_turn(view, point, turned);
     for (int a = 0; a < 3; a++) {
-        double scaled = frame->sign[a] * (point[frame->axis[a]] / frame->step) * frame->locate_scale;
+        double scaled = frame->sign[a] * (turned[frame->axis[a]] / frame->step) * frame->locate_scale;
         if (!(fabs(scaled) <= ENF_FILE_GRID_MAX)) return nowhere;
         query.at[a] = nearbyint(scaled);
     }

@@ -11,6 +11,7 @@ _Static_assert(sizeof(enf_file_header) == 64, "header layout");
 _Static_assert(sizeof(enf_file_section) == 48, "section layout");
 _Static_assert(sizeof(enf_file_provenance) == 152, "provenance layout");
 _Static_assert(sizeof(enf_file_frame) == 136, "frame layout");
+_Static_assert(sizeof(enf_file_turn) == 72, "turn layout");
 _Static_assert(sizeof(enf_file_region) == 32, "region layout");
 _Static_assert(sizeof(enf_file_spawn) == 32, "spawn layout");
 _Static_assert(sizeof(enf_file_cell) == 80, "cell layout");
@@ -19,7 +20,7 @@ _Static_assert(sizeof(enf_file_portal_polygon) == 56, "portal polygon layout");
 _Static_assert(sizeof(enf_file_box) == 32, "box layout");
 _Static_assert(sizeof(enf_file_triangle) == 56, "triangle layout");
 
-#define PARTS (ENF_PART_OPTIONAL + 1)
+#define PARTS (ENF_PART_NEEDED + 1)
 
 static enf_status damaged(enf_error *error, const char *what) {
     return enf_fail(error, ENF_BAD_INPUT, "not a usable world file: %s; compile the world again", what);

@@ -34,6 +34,7 @@ static void plan(layout *out, const enf_file_view *view) {
         memcpy(section->tag, spec->tag, sizeof section->tag);
         section->count = (uint64_t)enf_view_count(view, spec->dimension) + spec->extra;
         section->element_size = spec->element_size;
+        section->flags = spec->part == ENF_PART_NEEDED ? ENF_FILE_MUST_KNOW : 0;
         section->size = section->count * spec->element_size;
         section->checksum = enf_hash64(array, (size_t)section->size, 0);
     }

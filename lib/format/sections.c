@@ -14,6 +14,7 @@ const enf_section_spec enf_section_specs[] = {
     //      tag         part      dimension       extra  rule       target     lowest  field
     SECTION("PROVEN",   CORE,     NONE,               0, NONE,      NONE,          0, provenance),
     SECTION("FRAME",    CORE,     NONE,               0, NONE,      NONE,          0, frame),
+    SECTION("TURN",     NEEDED,   NONE,               0, NONE,      NONE,          0, turn),
     SECTION("STRINGS",  CORE,     STRING_BYTES,       0, NONE,      NONE,          0, strings),
     SECTION("REGION",   CORE,     REGIONS,            0, NONE,      NONE,          0, regions),
     SECTION("SPAWN",    CORE,     SPAWNS,             0, NONE,      NONE,          0, spawns),

@@ -48,8 +48,16 @@ typedef enum enf_dimension {
     ENF_DIMENSION_COUNT
 } enf_dimension;
 
-/// Which sections a file may leave out: none of a part that it has.
-typedef enum enf_part { ENF_PART_CORE, ENF_PART_EXACT, ENF_PART_GEOMETRY, ENF_PART_OPTIONAL } enf_part;
+/// Which sections a file may leave out: none of a part that it has. Those that it may leave out one by one
+/// are optional, or needed: without knowing these the others are misread, so their section says so
+/// (ENF_FILE_MUST_KNOW). These two come last.
+typedef enum enf_part {
+    ENF_PART_CORE,
+    ENF_PART_EXACT,
+    ENF_PART_GEOMETRY,
+    ENF_PART_OPTIONAL,
+    ENF_PART_NEEDED
+} enf_part;
 
 /// What the numbers of a section may be.
 typedef enum enf_rule {

@@ -129,6 +129,23 @@ static bool is_string(const enf_file_view *view, uint32_t string) {
     return (int64_t)string < view->string_bytes;
 }
 
+/// Rows of length 1, at right angles, right-handed; up to rounding.
+static bool is_rotation(const double rows[3][3]) {
+    if (!all_finite(rows[0], 9)) return false;
+    for (int a = 0; a < 3; a++) {
+        const double *p = rows[a], *q = rows[(a + 1) % 3], *r = rows[(a + 2) % 3];
+        double length = 0, across = 0, volume = 0;
+        for (int i = 0; i < 3; i++) {
+            int b = (i + 1) % 3, c = (i + 2) % 3;
+            length += p[i] * p[i];
+            across += p[i] * q[i];
+            volume += p[i] * (q[b] * r[c] - q[c] * r[b]);
+        }
+        if (!(fabs(length - 1) <= 0x1p-48 && fabs(across) <= 0x1p-48 && volume > 0)) return false;
+    }
+    return true;
+}
+
 static enf_status check_head(checker *check) {
     const enf_file_view *view = check->view;
     if (view->string_bytes < 1 || view->strings[view->string_bytes - 1] != 0)
@@ -153,6 +170,7 @@ static enf_status check_head(checker *check) {
     good = good && isfinite(frame->displacement_max) && isfinite(frame->displacement_mean);
     good = good && is_power_of_two(frame->locate_scale) && frame->locate_scale >= 1;
     good = good && frame->locate_rounding >= 0 && frame->locate_rounding <= ENF_FILE_GRID_MAX;
+    if (good && view->turn && !is_rotation(view->turn->rows)) return element_fails(check->error, "TURN", 0);
     return good ? ENF_OK : element_fails(check->error, "FRAME", 0);
 }
 

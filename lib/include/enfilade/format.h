@@ -59,7 +59,8 @@ typedef struct enf_file_provenance {
     int64_t leak;                   ///< 1: a spawn's region reaches the outside
 } enf_file_provenance;
 
-/// grid[a] = sign[a] * world[axis[a]] / step
+/// grid[a] = sign[a] * turned[axis[a]] / step, where turned is the world's point, or what enf_file_turn makes
+/// of it
 typedef struct enf_file_frame {
     double step;        ///< a power of two, world units
     int32_t axis[3];    ///< a permutation of 0 1 2
@@ -72,6 +73,11 @@ typedef struct enf_file_frame {
     double locate_scale;    ///< a power of two >= 1: points are located on a grid this many times finer
     double locate_rounding; ///< grid steps; a point this little outside the hull still counts as inside
 } enf_file_frame;
+
+/// A rotation: turned[a] = rows[a] . world. Worlds whose walls are parallel to no axis have one.
+typedef struct enf_file_turn {
+    double rows[3][3];
+} enf_file_turn;
 
 /// Corner of a loop: see enf_corner in lib/build/complex.h.
 typedef struct enf_file_corner {
@@ -151,7 +157,8 @@ typedef struct enf_file_view {
 
     const enf_file_provenance *provenance;
     const enf_file_frame *frame;
-    const char *strings; ///< zero-terminated texts one after the other; a string is an offset into it
+    const enf_file_turn *turn; ///< null: the world was not turned
+    const char *strings;       ///< zero-terminated texts one after the other; a string is an offset into it
     int64_t string_bytes;
 
     // World: regions, cells, portals.
