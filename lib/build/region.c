@@ -64,7 +64,7 @@ static void join_through_all(const enf_complex *complex, const int32_t *face_cel
 
 /// Joins cells through open pieces at least `crack` wide (gap.h), then those in the open that only cracks
 /// bound (needles) and those in gaps, then seals the cracks that are left between different components.
-/// parent: the cells, the outside of the hull, the pieces; walled: the same.
+/// parent: the cells, then the outside of the hull; walled: the same.
 static bool join_cells(enf_regions *regions, enf_complex *complex, const int32_t *face_cell, double crack,
                        int32_t *parent, bool *walled, bool *gap) {
     int32_t outside = complex->cell_count, cell[2];
