@@ -10,6 +10,8 @@
 static const cli_command benches[] = {
     {"thesis", "the worlds of the thesis: cells, splits, rooms found", cli_bench_thesis},
     {"levels", "DIR: compile every level in a folder; a row each", cli_bench_levels},
+    {"soups", "soups that others choke on: time, memory, cells", cli_bench_soups},
+    {"stability", "families of random soups: check, oracles, times", cli_bench_stability},
 };
 
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };

@@ -11,4 +11,10 @@ int cli_bench_thesis(int argc, char **argv);
 /// Compiles every level in a folder, each in a process of its own; a row each.
 int cli_bench_levels(int argc, char **argv);
 
+/// Named soups that others choke on, each in a process of its own; a row each.
+int cli_bench_soups(int argc, char **argv);
+
+/// Families of random soups, each run in a process of its own; a row per family, and one per failure.
+int cli_bench_stability(int argc, char **argv);
+
 #endif

@@ -34,8 +34,8 @@ static void every_soup_passes_check_and_oracles(void **state) {
             wrong++;
         }
         print_message("%s, seeds 0 to %d: %lld fine cells; %lld points, %lld segments asked\n",
-                      enf_stress_family(family, NULL), seeds_per_family() - 1, (long long)cells, (long long)points,
-                      (long long)segments);
+                      enf_stress_family(family, NULL), seeds_per_family() - 1, (long long)cells,
+                      (long long)points, (long long)segments);
         assert_true(segments > 0);
     }
     assert_int_equal(wrong, 0);

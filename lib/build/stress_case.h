@@ -55,7 +55,8 @@ void enf_stress_add_box(enf_stress_case *made, const double low[3], const double
 /// A solid of four corners, positively oriented or not.
 void enf_stress_add_tetrahedron(enf_stress_case *made, const double corners[4][3]);
 
-/// Moves the points from number `first` on: turned about x, then y, then z (degrees), then scaled, then moved.
+/// Moves the points from number `first` on: turned about x, then y, then z (degrees), then scaled, then
+/// moved.
 typedef struct enf_stress_motion {
     double turn[3], scale, move[3];
 } enf_stress_motion;

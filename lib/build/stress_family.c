@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One function per family. Every third seed compiles without welding where the soup is closed to the last bit.
+// One function per family. Every third seed compiles without welding where the soup is closed to the last
+// bit.
 #include "build/stress_family.h"
 
 #include "base/hash.h"
@@ -183,7 +184,8 @@ static void make_stacks(enf_stress_case *made) {
     if (enf_stress_whole(made, 3) == 0) turn_all(made);
 }
 
-// ---------------------------------------------------------------------------------------------- thin and wild
+// ---------------------------------------------------------------------------------------------- thin and
+// wild
 
 static void add_sliver_triangles(enf_stress_case *made) {
     double width = enf_stress_magnitude(made, -12, -3);
@@ -260,7 +262,8 @@ static void make_degenerate(enf_stress_case *made) {
     size_t copied = made->solid_count;
     for (size_t s = 0; s < copied && enf_stress_whole(made, 2); s++) { // the same box in another skin
         const double *points = made->soup.points;
-        const int32_t *first = made->planes[made->solid_plane[s]], *last = made->planes[made->solid_plane[s] + 1];
+        const int32_t *first = made->planes[made->solid_plane[s]],
+                      *last = made->planes[made->solid_plane[s] + 1];
         double low[3], high[3];
         memcpy(low, points + 3 * (size_t)first[0], sizeof low);
         memcpy(high, points + 3 * (size_t)last[2], sizeof high);
@@ -277,17 +280,19 @@ static void take_world(enf_stress_case *made, const enf_gen_world *world) {
     enf_soup *soup = &made->soup;
     made->failed = made->failed || world->failed || enf_soup_group(soup, "") < 0;
     for (size_t i = 0; i < world->point_count && !made->failed; i++)
-        made->failed = !enf_soup_add_point(soup, world->points[i][0], world->points[i][1], world->points[i][2]);
+        made->failed =
+            !enf_soup_add_point(soup, world->points[i][0], world->points[i][1], world->points[i][2]);
     for (size_t i = 0; i < world->triangle_count && !made->failed; i++)
-        made->failed = !enf_soup_add_polygon(soup, 3, world->triangles[i], NULL, NULL, -1, (int64_t)i + 1, 0, -1);
+        made->failed =
+            !enf_soup_add_polygon(soup, 3, world->triangles[i], NULL, NULL, -1, (int64_t)i + 1, 0, -1);
 }
 
-/// The built-in worlds, every corner of them moved a little. No spawn points: the polygons have to say what is
-/// air.
+/// The built-in worlds, every corner of them moved a little. No spawn points: the polygons have to say what
+/// is air.
 static void make_worlds(enf_stress_case *made) {
     typedef void generator(enf_gen_world *, const enf_gen_options *);
-    static generator *const worlds[] = {enf_gen_four_rooms, enf_gen_cavern, enf_gen_furnished, enf_gen_post_world,
-                                        enf_gen_four_rooms_distorted};
+    static generator *const worlds[] = {enf_gen_four_rooms, enf_gen_cavern, enf_gen_furnished,
+                                        enf_gen_post_world, enf_gen_four_rooms_distorted};
     enf_gen_options options = {.floors = 1, .rooms = 2, .detail = 1, .scale = {1, 1, 1}};
     int which = enf_stress_whole(made, (int)(sizeof worlds / sizeof *worlds));
     options.noise = enf_stress_magnitude(made, -15, -2);

@@ -70,7 +70,8 @@ static enf_status go_through_file(const enf_file_view *view, const char *folder,
 static bool judge_check(const enf_file_view *view, enf_stress_result *result) {
     enf_check_report *report = calloc(1, sizeof *report);
     enf_error error = {0};
-    enf_status status = report ? enf_world_check(view, report, &error) : enf_fail_memory(&error, "the report");
+    enf_status status =
+        report ? enf_world_check(view, report, &error) : enf_fail_memory(&error, "the report");
     free(report);
     if (!status) return true;
     return end_run(result, status == ENF_NO_RESOURCES ? ENF_STRESS_HARNESS : ENF_STRESS_BROKEN, error.text);
@@ -100,8 +101,8 @@ static void judge_world(enf_stress_case *made, const enf_build *build, const enf
     if (harness->folder) status = go_through_file(&image.view, harness->folder, &bytes, &back, &error);
     if (status)
         end_run(result, status == ENF_NO_RESOURCES ? ENF_STRESS_HARNESS : ENF_STRESS_BROKEN, error.text);
-    else if (judge_check(&back, result))
-        judge_oracles(made, &back, harness->points, result);
+    else if (judge_check(&back, result) && judge_oracles(made, &back, harness->points, result))
+        result->outcome = ENF_STRESS_FINE;
     free(bytes);
     enf_image_free(&image);
 }
@@ -113,22 +114,34 @@ static bool is_allowed(enf_status status, const enf_build_options *options) {
     return status == ENF_BAD_INPUT && options->keep == ENF_KEEP_OUTSIDE;
 }
 
+static bool note_stage(void *user, const char *stage, double fraction) {
+    (void)fraction;
+    ((enf_stress_result *)user)->stage = stage;
+    return true;
+}
+
 void enf_stress_compile(enf_stress_case *made, const enf_build_options *options,
                         const enf_stress_options *harness, enf_stress_result *result) {
     memset(result, 0, sizeof *result);
     enf_build build = {.soup = made->soup};
+    enf_build_options watched = *options;
+    watched.progress = note_stage;
+    watched.progress_user = result;
     enf_error error = {0};
     double started = cpu_seconds();
-    enf_status status = enf_build_run(&build, options, &error);
+    enf_status status = enf_build_run(&build, &watched, &error);
     result->seconds = cpu_seconds() - started;
+    result->peak_bytes = build.peak_bytes;
+    result->rejected = (int64_t)build.soup.rejected_count;
     result->polygons = (int32_t)build.mesh.polygon_count;
     result->tetrahedra = build.complex.tetrahedron_count;
     result->fine_cells = build.complex.cell_count;
     made->soup = build.soup; // with what clean rejected
+    if (harness->compiled) harness->compiled();
     if (!status)
         judge_world(made, &build, harness, result);
-    else if (!is_allowed(status, options))
-        end_run(result, ENF_STRESS_REFUSED, error.text);
+    else
+        end_run(result, is_allowed(status, options) ? ENF_STRESS_FINE : ENF_STRESS_REFUSED, error.text);
     memset(&build.soup, 0, sizeof build.soup);
     enf_build_free(&build);
 }

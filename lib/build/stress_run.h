@@ -8,6 +8,7 @@
 
 /// How a run ended.
 typedef enum enf_stress_outcome {
+    ENF_STRESS_UNFINISHED,
     ENF_STRESS_FINE,
     ENF_STRESS_REFUSED, ///< the pipeline gave an error for a soup that it should have compiled
     ENF_STRESS_BROKEN,  ///< check names an invariant that does not hold, or the file can't be read back
@@ -17,15 +18,20 @@ typedef enum enf_stress_outcome {
 
 typedef struct enf_stress_result {
     enf_stress_outcome outcome;
-    char reason[320]; ///< if not fine
-    double seconds;   ///< CPU time of the pipeline
+    char reason[320];           ///< if not fine
+    const char *volatile stage; ///< of the pipeline: the last one that was begun
+    double seconds;             ///< CPU time of the pipeline; 0 until it has ended
+    uint64_t peak_bytes;        ///< most memory that the process had until then
+    int64_t rejected;           ///< polygons and lines that were left out
     int32_t polygons, tetrahedra, fine_cells;
     enf_stress_verdict verdict;
 } enf_stress_result;
 
 typedef struct enf_stress_options {
-    const char *folder; ///< for the file, which is removed again; null: no file, the image in memory is checked
-    int points;         ///< how many the oracles ask for in a run (and as many segments, a quarter of surfaces)
+    const char
+        *folder; ///< for the file, which is removed again; null: no file, the image in memory is checked
+    void (*compiled)(void); ///< called between the pipeline and the rest; may be null
+    int points; ///< how many the oracles ask for in a run (and as many segments, a quarter of surfaces)
 } enf_stress_options;
 
 /// Compiles a soup with one thread, writes it, checks it, asks the oracles. The soup is taken from the case.

@@ -66,7 +66,8 @@ static meeting meet(judge *numbers, const enf_file_view *view, int32_t polygon, 
     const double *a = view->points[span[0]], *b = view->points[span[1]], *c = view->points[span[2]];
     int side_p = orient(numbers, a, b, c, p), side_q = orient(numbers, a, b, c, q);
     if (side_p == side_q && side_p != 0) return APART;
-    int64_t first = view->mesh_polygon_corner[polygon], count = view->mesh_polygon_corner[polygon + 1] - first;
+    int64_t first = view->mesh_polygon_corner[polygon],
+            count = view->mesh_polygon_corner[polygon + 1] - first;
     const int32_t *ring = view->mesh_corners + first;
     bool left = true, right = true, strict = true;
     for (int64_t i = 0; i < count; i++) {
@@ -96,8 +97,8 @@ static meeting meet_any(judge *numbers, const enf_file_view *view, const double 
 
 // ---------------------------------------------------------------------------------------------- places
 
-/// locate for a whole point in grid coordinates. False if it lies outside of the tetrahedron that was found (by
-/// less than rounding), or in none: then nothing exact is known.
+/// locate for a whole point in grid coordinates. False if it lies outside of the tetrahedron that was found
+/// (by less than rounding), or in none: then nothing exact is known.
 static bool locate_whole(judge *numbers, const enf_file_view *view, const double grid[3], enf_place *place) {
     const enf_file_frame *frame = view->frame;
     double world[3];
@@ -152,7 +153,8 @@ static void judge_segment(judge *numbers, const enf_file_view *view, const doubl
                             (int)at[0].fine_cell);
     // A sealed crack is narrower than the tolerances, yet wide enough for a segment.
     if (found == APART && at[0].region != at[1].region && view->provenance->sealed == 0)
-        enf_stress_disagree(verdict, "no polygon goes between fine cells %d and %d, but regions are %d and %d",
+        enf_stress_disagree(verdict,
+                            "no polygon goes between fine cells %d and %d, but regions are %d and %d",
                             (int)at[0].fine_cell, (int)at[1].fine_cell, (int)at[0].region, (int)at[1].region);
 }
 
@@ -192,7 +194,8 @@ static double distance_to_edge(const double at[3], const double p[3], const doub
 
 /// Distance from a point to a clean polygon, grid steps.
 static double distance_to_polygon(const enf_file_view *view, int32_t polygon, const double at[3]) {
-    int64_t first = view->mesh_polygon_corner[polygon], count = view->mesh_polygon_corner[polygon + 1] - first;
+    int64_t first = view->mesh_polygon_corner[polygon],
+            count = view->mesh_polygon_corner[polygon + 1] - first;
     const int32_t *ring = view->mesh_corners + first;
     const double *a = view->points[ring[0]];
     double normal[3] = {0, 0, 0}, nearest = HUGE_VAL;
@@ -210,8 +213,7 @@ static double distance_to_polygon(const enf_file_view *view, int32_t polygon, co
         nearest = fmin(nearest, distance_to_edge(at, p, q));
         double d[3], w[3], n[3];
         for (int k = 0; k < 3; k++) d[k] = q[k] - p[k], w[k] = at[k] - p[k];
-        for (int k = 0; k < 3; k++)
-            n[k] = d[(k + 1) % 3] * w[(k + 2) % 3] - d[(k + 2) % 3] * w[(k + 1) % 3];
+        for (int k = 0; k < 3; k++) n[k] = d[(k + 1) % 3] * w[(k + 2) % 3] - d[(k + 2) % 3] * w[(k + 1) % 3];
         inside = inside && dot(n, normal) >= 0;
     }
     if (!inside) return nearest;
@@ -223,6 +225,26 @@ static bool is_near_mesh(const enf_file_view *view, const double at[3], double r
     for (int32_t m = 0; m < view->mesh_polygon_count; m++)
         if (distance_to_polygon(view, m, at) <= reach) return true;
     return false;
+}
+
+/// How far a corner of a polygon is from the plane through its first three: by so much two ways of cutting it
+/// into triangles differ. Grid steps, rounded.
+static double unevenness(const enf_soup *soup, int64_t first, int64_t count, double step) {
+    double corner[16][3], normal[3] = {0, 0, 0}, most = 0;
+    for (int64_t i = 0; i < count && i < 16; i++)
+        for (int a = 0; a < 3; a++)
+            corner[i][a] = soup->points[3 * (size_t)soup->corner_point[first + i] + (size_t)a] / step;
+    for (int k = 0; k < 3; k++) {
+        int u = (k + 1) % 3, v = (k + 2) % 3;
+        normal[k] = (corner[1][u] - corner[0][u]) * (corner[2][v] - corner[0][v]) -
+                    (corner[1][v] - corner[0][v]) * (corner[2][u] - corner[0][u]);
+    }
+    for (int64_t i = 3; i < count && i < 16; i++) {
+        double w[3];
+        for (int a = 0; a < 3; a++) w[a] = corner[i][a] - corner[0][a];
+        most = fmax(most, fabs(dot(normal, w)) / sqrt(dot(normal, normal)));
+    }
+    return isfinite(most) ? most : HUGE_VAL;
 }
 
 void enf_stress_ask_surfaces(enf_stress_case *made, const enf_file_view *view, int count,
@@ -242,7 +264,9 @@ void enf_stress_ask_surfaces(enf_stress_case *made, const enf_file_view *view, i
         enf_stress_pick_point(made, soup->points, soup->corner_point + first, (int32_t)corners, world);
         for (int a = 0; a < 3; a++) grid[a] = frame->sign[a] * (world[frame->axis[a]] / frame->step);
         verdict->surfaces++;
-        if (!is_near_mesh(view, grid, enf_stress_margin(view) / frame->step))
+        double reach =
+            enf_stress_margin(view) / frame->step + 4 * unevenness(soup, first, corners, frame->step);
+        if (!is_near_mesh(view, grid, reach))
             enf_stress_disagree(verdict, "no clean polygon is near %.17g %.17g %.17g of input polygon %zu",
                                 world[0], world[1], world[2], p);
     }

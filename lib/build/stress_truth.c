@@ -2,7 +2,8 @@
 // Rock or air at points. Differences of coordinates are divided by a power of two about the world's size, so
 // nothing overflows from 1e-60 to 1e99, and each sum is off by less than 2^-44 of that size; points are asked
 // for only where the distance to every face is more than 2^-36 of it: there the answer is that of exact
-// arithmetic. Shells: solid angles (A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", 1983).
+// arithmetic. Shells: solid angles (A. van Oosterom, J. Strackee, "The solid angle of a plane triangle",
+// 1983).
 #include "build/stress_truth.h"
 
 #include "format/locate.h"
@@ -29,7 +30,7 @@ static double size_of(const enf_file_view *view) {
 double enf_stress_margin(const enf_file_view *view) {
     const enf_file_frame *frame = view->frame;
     return 4 * (frame->weld + frame->plane_tolerance + frame->displacement_max) + 0x1p-36 * size_of(view) +
-           4 * frame->step;
+           (frame->locate_rounding + 4) * frame->step;
 }
 
 // ---------------------------------------------------------------------------------------------- vectors
@@ -40,8 +41,7 @@ static void subtract(const double p[3], const double q[3], int exponent, double 
 }
 
 static void cross(const double u[3], const double v[3], double out[3]) {
-    for (int a = 0; a < 3; a++)
-        out[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+    for (int a = 0; a < 3; a++) out[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
 }
 
 static double dot(const double u[3], const double v[3]) {
