@@ -183,22 +183,22 @@ static double dot(const double u[3], const double v[3]) {
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-/// Distance from a point to a segment.
-static double distance_to_edge(const double at[3], const double p[3], const double q[3]) {
-    double d[3], w[3];
-    for (int a = 0; a < 3; a++) d[a] = q[a] - p[a], w[a] = at[a] - p[a];
-    double length = dot(d, d), share = length > 0 ? fmax(0, fmin(dot(d, w) / length, 1)) : 0;
-    for (int a = 0; a < 3; a++) w[a] -= share * d[a];
-    return sqrt(dot(w, w));
+/// From the nearest point of a segment to a point.
+static void leave_edge(const double at[3], const double p[3], const double q[3], double out[3]) {
+    double d[3];
+    for (int a = 0; a < 3; a++) d[a] = q[a] - p[a], out[a] = at[a] - p[a];
+    double length = dot(d, d), share = length > 0 ? fmax(0, fmin(dot(d, out) / length, 1)) : 0;
+    for (int a = 0; a < 3; a++) out[a] -= share * d[a];
 }
 
-/// Distance from a point to a clean polygon, grid steps.
+/// Distance from a point to a clean polygon, grid steps. The height above a sliver's plane is taken from the
+/// nearest edge: its normal is hardly better than half a double.
 static double distance_to_polygon(const enf_file_view *view, int32_t polygon, const double at[3]) {
     int64_t first = view->mesh_polygon_corner[polygon],
             count = view->mesh_polygon_corner[polygon + 1] - first;
     const int32_t *ring = view->mesh_corners + first;
     const double *a = view->points[ring[0]];
-    double normal[3] = {0, 0, 0}, nearest = HUGE_VAL;
+    double normal[3] = {0, 0, 0}, foot[3] = {0, 0, 0}, nearest = HUGE_VAL;
     for (int64_t i = 1; i + 1 < count; i++) {
         const double *b = view->points[ring[i]], *c = view->points[ring[i + 1]];
         for (int k = 0; k < 3; k++) {
@@ -210,15 +210,14 @@ static double distance_to_polygon(const enf_file_view *view, int32_t polygon, co
     bool inside = length > 0;
     for (int64_t i = 0; i < count; i++) {
         const double *p = view->points[ring[i]], *q = view->points[ring[(i + 1) % count]];
-        nearest = fmin(nearest, distance_to_edge(at, p, q));
         double d[3], w[3], n[3];
+        leave_edge(at, p, q, w);
+        if (sqrt(dot(w, w)) < nearest) nearest = sqrt(dot(w, w)), memcpy(foot, w, sizeof foot);
         for (int k = 0; k < 3; k++) d[k] = q[k] - p[k], w[k] = at[k] - p[k];
         for (int k = 0; k < 3; k++) n[k] = d[(k + 1) % 3] * w[(k + 2) % 3] - d[(k + 2) % 3] * w[(k + 1) % 3];
         inside = inside && dot(n, normal) >= 0;
     }
-    if (!inside) return nearest;
-    double w[3] = {at[0] - a[0], at[1] - a[1], at[2] - a[2]};
-    return fmin(nearest, fabs(dot(normal, w)) / length);
+    return inside ? fmin(nearest, fabs(dot(normal, foot)) / length) : nearest;
 }
 
 static bool is_near_mesh(const enf_file_view *view, const double at[3], double reach) {
