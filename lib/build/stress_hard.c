@@ -45,8 +45,10 @@ static void make_quads(enf_stress_case *made, const enf_stress_hard *soup) {
         }
         enf_stress_add_polygon(made, 4, (const double(*)[3])at);
     }
-    const double cap[3][3] = {{-1, -1, 1}, {1, -1, 1}, {0, 1, 1}}; // a world needs some volume
-    enf_stress_add_polygon(made, 3, cap);
+    for (int side = -1; side <= 1; side += 2) { // air on both sides of the quads
+        const double cap[3][3] = {{-1, -1, side}, {1, -1, side}, {0, 1, side}};
+        enf_stress_add_polygon(made, 3, cap);
+    }
 }
 
 static void make_triangles(enf_stress_case *made, const enf_stress_hard *soup) {
@@ -81,10 +83,10 @@ static void make_strips(enf_stress_case *made, const enf_stress_hard *soup) {
         double x = 0, widths[1024], sum = 0;
         for (int i = 0; i < per_row && i < 1024; i++) sum += widths[i] = enf_stress_uniform(made, 0.1, 1);
         for (int i = 0; i < per_row && i < 1024; i++) {
-            double to = i + 1 < per_row ? x + widths[i] * length / sum : length, y = row * length / rows,
-                   next = (row + 1) * length / rows;
+            double up = row % 2 ? 2 : -2, to = i + 1 < per_row ? x + widths[i] * length / sum : length,
+                   y = row * length / rows, next = (row + 1) * length / rows;
             const double flat[4][3] = {{x, y, 0}, {to, y, 0}, {to, next, 0}, {x, next, 0}};
-            const double wall[4][3] = {{x, y, 0}, {to, y, 0}, {to, y, 2}, {x, y, 2}};
+            const double wall[4][3] = {{x, y, 0}, {to, y, 0}, {to, y, up}, {x, y, up}};
             enf_stress_add_polygon(made, 4, row % 5 == 4 ? wall : flat);
             x = to;
         }
@@ -206,8 +208,9 @@ static const enf_stress_hard soups[] = {
     {"offset-1e7", "200 turned boxes, 1e7 from the origin", "-", 0, false, 1, make_far, 200, 1e7},
     {"scale-1e-60", "200 turned boxes of size 1e-60", "crash", 0, false, 1, make_scaled, 200, 1e-60},
     {"scale-1e99", "200 turned boxes of size 1e99", "crash", 0, false, 1, make_scaled, 200, 1e99},
-    {"scale-1e100", "200 turned boxes up to 1e100: beyond is refused", "crash", 0, false, 1, make_scaled, 200,
-     1e100},
+    {"scale-1e100", "200 turned boxes of size 1e100", "crash", 0, false, 1, make_scaled, 200, 1e100},
+    {"scale-2e100", "200 turned boxes of size 2e100: what is beyond 1e100 is rejected", "crash", 0, false, 1,
+     make_scaled, 200, 2e100},
     {"one-nan", "200 turned boxes, one coordinate NaN", "hang", 0, false, 1, make_strange, 200, NAN},
     {"one-inf", "200 turned boxes, one coordinate infinite", "crash", 0, false, 1, make_strange, 200,
      INFINITY},

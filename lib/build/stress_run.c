@@ -114,9 +114,23 @@ static bool is_allowed(enf_status status, const enf_build_options *options) {
     return status == ENF_BAD_INPUT && options->keep == ENF_KEEP_OUTSIDE;
 }
 
+/// Watches the pipeline: a run that is killed leaves what was noted last.
+typedef struct watch {
+    const enf_build *build;
+    enf_stress_result *result;
+    double started;
+} watch;
+
 static bool note_stage(void *user, const char *stage, double fraction) {
+    const watch *watch = user;
+    enf_stress_result *result = watch->result;
     (void)fraction;
-    ((enf_stress_result *)user)->stage = stage;
+    if (result->stage == stage) return true;
+    result->stage = stage;
+    result->polygons = (int32_t)watch->build->mesh.polygon_count;
+    result->tetrahedra = watch->build->complex.tetrahedron_count;
+    result->fine_cells = watch->build->complex.cell_count;
+    if (strcmp(stage, "decimate") == 0) result->cell_seconds = cpu_seconds() - watch->started;
     return true;
 }
 
@@ -124,13 +138,13 @@ void enf_stress_compile(enf_stress_case *made, const enf_build_options *options,
                         const enf_stress_options *harness, enf_stress_result *result) {
     memset(result, 0, sizeof *result);
     enf_build build = {.soup = made->soup};
+    watch watch = {.build = &build, .result = result, .started = cpu_seconds()};
     enf_build_options watched = *options;
     watched.progress = note_stage;
-    watched.progress_user = result;
+    watched.progress_user = &watch;
     enf_error error = {0};
-    double started = cpu_seconds();
     enf_status status = enf_build_run(&build, &watched, &error);
-    result->seconds = cpu_seconds() - started;
+    result->seconds = cpu_seconds() - watch.started;
     result->peak_bytes = build.peak_bytes;
     result->rejected = (int64_t)build.soup.rejected_count;
     result->polygons = (int32_t)build.mesh.polygon_count;

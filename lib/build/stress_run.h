@@ -18,12 +18,13 @@ typedef enum enf_stress_outcome {
 
 typedef struct enf_stress_result {
     enf_stress_outcome outcome;
-    char reason[320];           ///< if not fine
-    const char *volatile stage; ///< of the pipeline: the last one that was begun
-    double seconds;             ///< CPU time of the pipeline; 0 until it has ended
-    uint64_t peak_bytes;        ///< most memory that the process had until then
-    int64_t rejected;           ///< polygons and lines that were left out
-    int32_t polygons, tetrahedra, fine_cells;
+    char reason[320];                         ///< if not fine
+    const char *volatile stage;               ///< of the pipeline: the last one that was begun
+    double seconds;                           ///< CPU time of the pipeline; 0 until it has ended
+    uint64_t peak_bytes;                      ///< most memory that the process had until then
+    int64_t rejected;                         ///< polygons and lines that were left out
+    double cell_seconds;                      ///< of that until decimate begins: clean to colour
+    int32_t polygons, tetrahedra, fine_cells; ///< also of a run that did not finish, as far as it came
     enf_stress_verdict verdict;
 } enf_stress_result;
 

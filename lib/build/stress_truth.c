@@ -107,9 +107,9 @@ static double winding_at(const enf_soup *soup, const double at[3], int exponent)
 
 /// +1: the winding number is negative (air), -1: it is not; 0: nearer than about `margin` to a face.
 static int shell_at(const enf_stress_case *made, const double at[3], double margin, int exponent) {
-    static const int corner[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    static const int corner[5][3] = {{0, 0, 0}, {1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
     double first = 0;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         double moved[3];
         for (int a = 0; a < 3; a++) moved[a] = at[a] + 4 * margin * corner[i][a];
         double winding = winding_at(&made->soup, moved, exponent), whole = nearbyint(winding);
