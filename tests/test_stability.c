@@ -21,7 +21,7 @@ static int seeds_per_family(void) {
 
 static void every_soup_passes_check_and_oracles(void **state) {
     (void)state;
-    const enf_stress_options harness = {.points = 200};
+    const enf_stress_options harness = {.cells = 10, .points = 200};
     int wrong = 0;
     for (int family = 0; enf_stress_family(family, NULL); family++) {
         int64_t points = 0, segments = 0, cells = 0;
@@ -47,7 +47,7 @@ static void every_soup_passes_check_and_oracles(void **state) {
 static void compile_boxes(enf_stress_case *made, enf_build *build, enf_image *image) {
     enf_error error = {0};
     assert_int_equal(enf_stress_make(made, 0, 2, &error), ENF_OK);
-    enf_build_options options = enf_stress_build_options(made, 2);
+    enf_build_options options = enf_stress_build_options(made, 2, 0);
     *build = (enf_build){.soup = made->soup};
     if (enf_build_run(build, &options, &error) != ENF_OK) fail_msg("%s", error.text);
     made->soup = build->soup;

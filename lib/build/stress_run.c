@@ -160,11 +160,11 @@ void enf_stress_compile(enf_stress_case *made, const enf_build_options *options,
     enf_build_free(&build);
 }
 
-enf_build_options enf_stress_build_options(const enf_stress_case *made, uint64_t seed) {
+enf_build_options enf_stress_build_options(const enf_stress_case *made, uint64_t seed, int cells) {
     enf_build_options options = {.clean = {.weld = made->weld, .plane_tolerance = -1},
                                  .keep = seed % 4 == 1 ? ENF_KEEP_OUTSIDE : ENF_KEEP_ALL,
                                  .threads = 1};
-    if (seed % 2) options.stop = (enf_stop){.rule = ENF_STOP_CELLS, .cells = 10};
+    if (cells > 0 && seed % 2) options.stop = (enf_stop){.rule = ENF_STOP_CELLS, .cells = cells};
     return options;
 }
 
@@ -176,7 +176,7 @@ void enf_stress_run(int family, uint64_t seed, const enf_stress_options *harness
     if (status) {
         end_run(result, ENF_STRESS_HARNESS, error.text);
     } else {
-        enf_build_options options = enf_stress_build_options(&made, seed);
+        enf_build_options options = enf_stress_build_options(&made, seed, harness->cells);
         enf_stress_compile(&made, &options, harness, result);
     }
     enf_stress_case_free(&made);

@@ -31,6 +31,7 @@ typedef struct enf_stress_result {
 typedef struct enf_stress_options {
     const char
         *folder; ///< for the file, which is removed again; null: no file, the image in memory is checked
+    int cells;   ///< > 0: odd seeds are decimated down to so many cells; otherwise --stop auto
     void (*compiled)(void); ///< called between the pipeline and the rest; may be null
     int points; ///< how many the oracles ask for in a run (and as many segments, a quarter of surfaces)
 } enf_stress_options;
@@ -43,6 +44,6 @@ void enf_stress_compile(enf_stress_case *made, const enf_build_options *options,
 void enf_stress_run(int family, uint64_t seed, const enf_stress_options *harness, enf_stress_result *result);
 
 /// What a family and seed are compiled with: mostly --keep all; kinds of regions do not depend on it.
-enf_build_options enf_stress_build_options(const enf_stress_case *made, uint64_t seed);
+enf_build_options enf_stress_build_options(const enf_stress_case *made, uint64_t seed, int cells);
 
 #endif
