@@ -191,6 +191,19 @@ static void leave_edge(const double at[3], const double p[3], const double q[3],
     for (int a = 0; a < 3; a++) out[a] -= share * d[a];
 }
 
+bool enf_stress_near_edge(const enf_soup *soup, const double at[3], double reach) {
+    for (size_t p = 0; p < soup->polygon_count; p++) {
+        int64_t first = soup->polygon_corner[p], end = soup->polygon_corner[p + 1];
+        for (int64_t k = first; k < end; k++) {
+            double way[3];
+            leave_edge(at, soup->points + 3 * (size_t)soup->corner_point[k],
+                       soup->points + 3 * (size_t)soup->corner_point[k + 1 < end ? k + 1 : first], way);
+            if (dot(way, way) <= reach * reach) return true;
+        }
+    }
+    return false;
+}
+
 /// Distance from a point to a clean polygon, grid steps. The height above a sliver's plane is taken from the
 /// nearest edge: its normal is hardly better than half a double.
 static double distance_to_polygon(const enf_file_view *view, int32_t polygon, const double at[3]) {

@@ -160,6 +160,7 @@ void enf_stress_ask_points(enf_stress_case *made, const enf_file_view *view, int
         choose_point(made, view, margin, at);
         int truth = solids ? solid_at(made, at, margin, exponent) : shell_at(made, at, margin, exponent);
         if (truth == 0) continue;
+        if (enf_stress_near_edge(&made->soup, at, margin)) continue;
         verdict->points++;
         enf_place place = enf_view_locate(view, at, -1);
         enf_world_kind kind = solids ? ENF_WORLD_ROCK : ENF_WORLD_AIR;

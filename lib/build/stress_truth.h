@@ -39,6 +39,10 @@ void enf_stress_ask_surfaces(enf_stress_case *made, const enf_file_view *view, i
 void enf_stress_pick_point(enf_stress_case *made, const double *points, const int32_t *ring, int32_t count,
                            double at[3]);
 
+/// Is an edge of a polygon so near? (Polygons without area are no faces of solids, yet clean may leave
+/// slivers of them.)
+bool enf_stress_near_edge(const enf_soup *soup, const double at[3], double reach);
+
 /// How far clean may have moved a face, and how far outside the hull a point may still be located in it,
 /// world units, with room for rounding.
 double enf_stress_margin(const enf_file_view *view);
