@@ -265,6 +265,9 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"bench marks", "there is no table 'marks'"},
         {"bench cells", "the folder is missing"},
         {"bench cells . --runs 0", "--runs: '0'"},
+        {"bench stability --family nobles", "there is no 'nobles'"},
+        {"bench stability --first -1", "'-1' is no whole number"},
+        {"bench soups --soup gazpacho", "there is no soup 'gazpacho'"},
     };
     write_text("box.obj", BOX);
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) expect_failure(lines[i][0], 2, lines[i][1]);
@@ -288,6 +291,10 @@ static void help_and_version_are_data(void **state) {
         {"gen --help", "rotate="},
         {"gen list", "four-rooms-distorted"},
         {"bench --help", "thesis"},
+        {"bench stability --help", "--seeds"},
+        {"bench soups --help", "--limit"},
+        {"bench stability --seeds 2 --family rotations", "\nrotations,2,0,0,0,0,0,"},
+        {"bench soups --soup cubes-1000-1e-12 --memory 0", "check holds"},
     };
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
         process ran = run_enfilade(NULL, lines[i][0]);

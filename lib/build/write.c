@@ -319,7 +319,8 @@ static enf_status make_cells(enf_image *image, const enf_build *build, enf_error
     }
     double step = build->mesh.frame.step;
     for (int32_t i = 0; i < build->cell_count; i++) {
-        cells[i].volume = cells[i].volume * step * step * step; // the cube alone may underflow
+        // The cube alone may underflow; of hairlines, rounding may leave less than nothing.
+        cells[i].volume = fmax(cells[i].volume, 0) * step * step * step;
         close_box(cells[i].box_min, cells[i].box_max);
     }
     image->view.cells = cells;
