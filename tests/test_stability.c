@@ -99,8 +99,7 @@ static void oracles_notice_what_is_wrong(void **state) {
     for (int32_t t = 0; t < view->tetrahedron_count; t++) {
         roots[t] = view->tetrahedron_root[t];
         cut += roots[t] >= 0;
-        for (int32_t c = 0; c < view->fine_count && roots[t] >= 0; c++) // its first cell
-            if (view->fine_tetrahedron[c] == t) roots[t] = -1 - c;
+        while (roots[t] >= 0) roots[t] = view->node_child[roots[t]][0]; // one of its cells
     }
     assert_true(cut > 0);
     whole.tetrahedron_root = roots;

@@ -100,12 +100,9 @@ static meeting meet_any(judge *numbers, const enf_file_view *view, const double 
 /// locate for a whole point in grid coordinates. False if it lies outside of the tetrahedron that was found
 /// (by less than rounding), or in none: then nothing exact is known.
 static bool locate_whole(judge *numbers, const enf_file_view *view, const double grid[3], enf_place *place) {
-    const enf_file_frame *frame = view->frame;
-    double world[3];
-    for (int a = 0; a < 3; a++) world[frame->axis[a]] = frame->sign[a] * grid[a] * frame->step;
-    *place = enf_view_locate(view, world, -1);
+    *place = enf_view_locate_grid(view, grid, -1);
     if (place->fine_cell < 0) return false;
-    const int32_t *corner = view->tetrahedra[view->fine_tetrahedron[place->fine_cell]];
+    const int32_t *corner = view->tetrahedra[place->tetrahedron];
     for (int k = 0; k < 4; k++) {
         const double *at[4];
         for (int i = 0; i < 4; i++) at[i] = i == k ? grid : view->points[corner[i]];

@@ -187,13 +187,16 @@ static void search_nearest(query *query) {
 }
 
 enf_place enf_view_locate(const enf_file_view *view, const double point[3], int32_t hint) {
-    const enf_file_frame *frame = view->frame;
+    double grid[3];
+    enf_view_to_grid(view, point, grid);
+    return enf_view_locate_grid(view, grid, hint);
+}
+
+enf_place enf_view_locate_grid(const enf_file_view *view, const double grid[3], int32_t hint) {
     const enf_place nowhere = {-1, -1, -1, -1, ENF_WORLD_OUTSIDE};
     query query = {.view = view, .best = -1, .best_tetrahedron = -1};
-    double turned[3];
-    enf_view_turn(view, point, turned);
     for (int a = 0; a < 3; a++) {
-        double scaled = frame->sign[a] * (turned[frame->axis[a]] / frame->step) * frame->locate_scale;
+        double scaled = grid[a] * view->frame->locate_scale;
         if (!(fabs(scaled) <= ENF_FILE_GRID_MAX)) return nowhere;
         query.at[a] = nearbyint(scaled);
     }

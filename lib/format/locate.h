@@ -8,4 +8,7 @@
 /// enf_world_locate without a world around it. Uses the core arrays of the view only.
 enf_place enf_view_locate(const enf_file_view *view, const double point[3], int32_t hint);
 
+/// The same for a point in grid coordinates.
+enf_place enf_view_locate_grid(const enf_file_view *view, const double grid[3], int32_t hint);
+
 #endif
