@@ -3,6 +3,7 @@
 #include "build/stress_truth.h"
 
 #include "base/array.h"
+#include "format/frame.h"
 #include "format/locate.h"
 
 #include <gmp.h>
@@ -271,7 +272,7 @@ void enf_stress_ask_surfaces(enf_stress_case *made, const enf_file_view *view, i
         if (rejected[p] || corners < 3) continue;
         double world[3], grid[3];
         enf_stress_pick_point(made, soup->points, soup->corner_point + first, (int32_t)corners, world);
-        for (int a = 0; a < 3; a++) grid[a] = frame->sign[a] * (world[frame->axis[a]] / frame->step);
+        enf_view_to_grid(view, world, grid);
         verdict->surfaces++;
         double reach =
             enf_stress_margin(view) / frame->step + 4 * unevenness(soup, first, corners, frame->step);
