@@ -13,7 +13,7 @@
 
 /// Cells are joined where the opening between them is at least this share of either's shadow on it: the least
 /// that joins most parts of cut tetrahedra and leaves the thesis's rooms apart.
-#define OPENING_MIN 0.5
+#define OPENING_MIN 0.25
 
 static int32_t apex(const enf_tet_mesh *tets, int32_t t, int32_t facet) {
     int k = 0;
