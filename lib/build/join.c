@@ -153,8 +153,8 @@ static void facet_area(const enf_subdivision *s, int32_t f, double area[3]) {
     }
 }
 
-/// Is the area of the cell's shadow along a direction more than this? Each line through a convex cell meets its
-/// surface twice.
+/// Is the area of the cell's shadow along a direction more than this? Each line through a convex cell meets
+/// its surface twice.
 static bool shadow_exceeds(const enf_subdivision *s, int32_t cell, const double direction[3], double area) {
     double sum = 0;
     for (int32_t f = s->cell_facet[cell], next; f >= 0 && sum <= 2 * area; f = next) {
