@@ -176,7 +176,8 @@ bool enf_settler_settle(enf_settler *s, const enf_cut_cell *cut) {
     for (size_t i = 0; i < s->outer_count; i++) { // before facets go
         const enf_share *facet = &space->facets[s->outer[i]];
         int32_t beyond = facet->cell[is_new(cut, facet->cell[0])];
-        if (beyond >= 0 && !push(&s->touched, &s->touched_count, &s->touched_capacity, beyond)) return false;
+        if (beyond < 0 || beyond == s->touched[s->touched_count - 1]) continue;
+        if (!push(&s->touched, &s->touched_count, &s->touched_capacity, beyond)) return false;
     }
     if (!enf_joiner_reserve(&s->joiner, space->cell_count)) return false;
     if (s->join) join_all(s);
