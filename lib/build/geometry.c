@@ -154,14 +154,15 @@ static void exact_plane_of(const enf_geometry *geometry, int32_t plane, exact_pl
     const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
     int64_t u[3], v[3];
     whole_spans(geometry, plane, u, v);
-    out->offset.sign = out->offset.size = 0;
+    enf_int128 high = 0, low = 0; // of the offset, in halves of the normal
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        enf_wide coordinate;
-        enf_wide_set(&out->normal[i], (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j]);
-        enf_wide_set(&coordinate, (int64_t)p[i]);
-        enf_wide_subtract_product(&out->offset, &out->normal[i], &coordinate);
+        enf_int128 normal = (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j];
+        enf_wide_set(&out->normal[i], normal);
+        high -= (normal >> 64) * (int64_t)p[i];
+        low -= (enf_int128)(uint64_t)normal * (int64_t)p[i];
     }
+    enf_wide_set_parts(&out->offset, high, low);
 }
 
 static const enf_wide *component(const exact_plane *plane, int i) {

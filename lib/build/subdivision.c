@@ -225,16 +225,18 @@ int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
         const enf_share *facet = &s->facets[f];
         next = facet->next[facet->cell[1] == cell];
         if (!enf_array_reserve(s->shares, s->share_capacity, s->share_count + 1)) return -1;
-        s->shares[s->share_count++] = f;
+        enf_beside *beside = &s->shares[s->share_count++];
+        *beside = (enf_beside){.facet = f};
         int32_t h = facet->first, from = s->halves[h].vertex;
         int sign = enf_subdivision_sign(s, from);
         do {
-            behind |= sign < 0;
-            front |= sign > 0;
+            beside->behind |= sign < 0;
+            beside->front |= sign > 0;
             int32_t after = s->halves[h].next, to = s->halves[after].vertex;
             int sign_to = enf_subdivision_sign(s, to);
             if (sign * sign_to < 0 && !note_cut_edge(s, h, from, to)) return -1;
             if (sign == 0) {
+                beside->along |= sign_to == 0;
                 if (!enf_array_reserve(s->touching, s->touching_capacity, s->touching_count + 1)) return -1;
                 s->touching[s->touching_count++] = from;
             }
@@ -242,6 +244,8 @@ int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
             from = to;
             sign = sign_to;
         } while (h != facet->first);
+        behind |= beside->behind;
+        front |= beside->front;
     }
     return behind && front;
 }
@@ -343,42 +347,47 @@ static void hang(enf_subdivision *s, int32_t f, int side, int32_t cell) {
     s->cell_facet[cell] = f;
 }
 
-/// Sorts one facet of the cell to the cell behind or the one in front, or cuts it and does both.
-static bool sort_facet(enf_subdivision *s, int32_t f, int32_t cell, int32_t ahead) {
-    int side = s->facets[f].cell[1] == cell;
-    int32_t into = -1, out = -1, touching = -1, first = s->facets[f].first, h = first;
-    bool behind = false, front = false;
+static int known_sign(const enf_subdivision *s, int32_t half) {
+    return (s->vertex_sign[s->halves[half].vertex] & 3) - 1;
+}
+
+/// Cuts a facet that has corners on both sides, after its edges have been.
+static bool divide_facet(enf_subdivision *s, int32_t f, int32_t cell, int32_t ahead) {
+    int32_t into = -1, out = -1, first = s->facets[f].first, h = first;
     do {
         int32_t next = s->halves[h].next;
-        int sign = (s->vertex_sign[s->halves[h].vertex] & 3) - 1,
-            sign_to = (s->vertex_sign[s->halves[next].vertex] & 3) - 1;
-        behind |= sign < 0;
-        front |= sign > 0;
-        if (sign == 0 && sign_to > 0) into = h;
-        if (sign == 0 && sign_to < 0) out = h;
-        if (sign == 0 && sign_to == 0) touching = h;
+        if (known_sign(s, h) == 0) {
+            int sign = known_sign(s, next);
+            if (sign > 0) into = h;
+            if (sign < 0) out = h;
+        }
         h = next;
     } while (h != first);
-    int32_t plane = enf_subdivision_plane(s, f);
-    if (behind && front) {
-        int32_t g = split_facet(s, f, into, out), across = s->facets[f].cell[1 - side];
-        if (g < 0) return false;
-        if (across >= 0) s->facets[f].next[1 - side] = g; // beside it in the list of the cell beyond
-        hang(s, f, side, cell);
-        hang(s, g, side, ahead);
-        return outline_from(s, s->facets[f].first, side, plane);
-    }
-    hang(s, f, side, front ? ahead : cell);
-    if (front || touching < 0) return true;
-    for (h = first;;) { // an edge on the plane may be several
+    int side = s->facets[f].cell[1] == cell;
+    int32_t g = split_facet(s, f, into, out), across = s->facets[f].cell[1 - side];
+    if (g < 0) return false;
+    if (across >= 0) s->facets[f].next[1 - side] = g; // beside it in the list of the cell beyond
+    hang(s, f, side, cell);
+    hang(s, g, side, ahead);
+    return outline_from(s, s->facets[f].first, side, enf_subdivision_plane(s, f));
+}
+
+/// Sorts one facet of the cell to the cell behind or the one in front, or cuts it and does both.
+static bool sort_facet(enf_subdivision *s, const enf_beside *beside, int32_t cell, int32_t ahead) {
+    int32_t f = beside->facet, first = s->facets[f].first, h = first;
+    if (beside->behind && beside->front) return divide_facet(s, f, cell, ahead);
+    int side = s->facets[f].cell[1] == cell;
+    hang(s, f, side, beside->front ? ahead : cell);
+    if (beside->front || !beside->along) return true;
+    do { // an edge on the plane may be several
         int32_t next = s->halves[h].next;
-        if ((s->vertex_sign[s->halves[h].vertex] & 3) == 1 &&
-            (s->vertex_sign[s->halves[next].vertex] & 3) == 1 && !outline_from(s, h, side, plane)) {
+        if (known_sign(s, h) == 0 && known_sign(s, next) == 0 &&
+            !outline_from(s, h, side, enf_subdivision_plane(s, f))) {
             return false;
         }
         h = next;
-        if (h == first) return true;
-    }
+    } while (h != first);
+    return true;
 }
 
 /// Do the facets that gave two planes their names lie in one plane?
@@ -466,7 +475,7 @@ int32_t enf_subdivision_cut(enf_subdivision *s, int32_t cell) {
     s->cell_facet[cell] = s->cell_facet[ahead] = -1;
     s->outline_count = 0;
     for (size_t i = 0; i < s->share_count; i++) {
-        if (!sort_facet(s, s->shares[i], cell, ahead)) return -1;
+        if (!sort_facet(s, &s->shares[i], cell, ahead)) return -1;
     }
     return add_cut_facet(s, node, cell, ahead) ? node : -1;
 }

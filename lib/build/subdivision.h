@@ -41,6 +41,13 @@ typedef struct enf_cut_edge {
     int32_t vertex;     ///< the crossing with the plane, if it has been made, else -1
 } enf_cut_edge;
 
+/// A facet of the cell that is held against the plane.
+typedef struct enf_beside {
+    int32_t facet;
+    bool behind, front; ///< has corners there
+    bool along;         ///< has an edge on the plane
+} enf_beside;
+
 typedef struct enf_subdivision {
     enf_geometry geometry; ///< points, planes and crossings; the vertices
 
@@ -71,7 +78,7 @@ typedef struct enf_subdivision {
     size_t sign_capacity;
 
     // Scratch of one cell: its facets, its edges that the plane crosses, and the outline of the cut.
-    int32_t *shares;
+    enf_beside *shares;
     size_t share_count, share_capacity;
     enf_cut_edge *cut_edges;
     size_t cut_edge_count, cut_edge_capacity;
