@@ -4,6 +4,7 @@
 #include "build/build.h"
 
 #include "base/array.h"
+#include "base/memory.h"
 #include "base/timer.h"
 #include "build/arrangement.h"
 #include "build/connect.h"
@@ -17,7 +18,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 /// What lives only while the recipe runs.
 typedef struct kitchen {
@@ -197,6 +197,8 @@ static enf_status run_stage(kitchen *k, const char *name, enf_status (*stage)(ki
     enf_status status = stage(k);
     report->seconds = enf_timer_now() - start;
     report->cpu_seconds = enf_timer_cpu() - cpu_start;
+    report->peak_bytes = enf_memory_peak();
+    report->resident_bytes = enf_memory_resident();
     return status;
 }
 
@@ -234,9 +236,7 @@ enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf
     enf_tet_mesh_free(&k.tets);
     enf_arrangement_free(&k.arrangement);
     free(k.node_of);
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
     build->seconds = enf_timer_now() - start;
-    build->peak_bytes = (uint64_t)usage.ru_maxrss * 1024;
+    build->peak_bytes = enf_memory_peak();
     return status;
 }
