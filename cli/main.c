@@ -2,6 +2,8 @@
 // The program `enfilade`: finds the command and runs it.
 #include "cli/cli.h"
 
+#include "base/memory.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -47,6 +49,7 @@ static bool is_later(const char *name) {
 }
 
 int main(int argc, char **argv) {
+    enf_memory_map_large_blocks();
     if (argc < 2) {
         print_usage(stderr);
         return ENF_BAD_USAGE;

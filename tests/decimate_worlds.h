@@ -237,13 +237,6 @@ static inline enf_graph graph_of(const world *w) {
     return graph;
 }
 
-static inline void graph_free(enf_graph *graph) {
-    free(graph->piece_cell);
-    free(graph->piece_open);
-    free(graph->piece_corner);
-    free(graph->corners);
-}
-
 /// Another order of the pieces, other first corners, some pieces seen from the other side.
 static inline void shuffle(world *w, uint64_t *seed) {
     for (int i = 0; i < w->count; ++i) {

@@ -13,7 +13,7 @@
 #include <malloc.h>
 #endif
 
-enum { PATH_LENGTH = 1024 };
+enum { PATH_LENGTH = 1024, LARGE_BLOCK = 1 << 18 };
 
 uint64_t enf_memory_peak(void) {
     struct rusage usage;
@@ -31,9 +31,9 @@ uint64_t enf_memory_resident(void) {
     return page > 0 ? resident * (uint64_t)page : 0;
 }
 
-void enf_memory_trim(void) {
+void enf_memory_map_large_blocks(void) {
 #ifdef __GLIBC__
-    malloc_trim(0);
+    mallopt(M_MMAP_THRESHOLD, LARGE_BLOCK); // also keeps it from growing with what is freed
 #endif
 }
 

@@ -16,8 +16,9 @@ uint64_t enf_memory_resident(void);
 /// nothing is known.
 uint64_t enf_memory_limit(const char **limiter);
 
-/// Gives the pages of freed memory back to the system, where the C library can; otherwise they would count
-/// as taken while the next stage takes others.
-void enf_memory_trim(void);
+/// For programs that handle large arrays, at their start: asks the C library to map large blocks each by
+/// itself. Then freed ones are free at once, and growing ones need not be copied; otherwise the gaps between
+/// blocks that come and go add up to a third of all memory. Concerns the whole process.
+void enf_memory_map_large_blocks(void);
 
 #endif

@@ -162,7 +162,6 @@ static enf_status decimate(kitchen *k) {
     double unit = build->mesh.frame.step * 0x1p53;
     status = enf_graph_decimate(&graph, k->options->heuristic, &k->options->stop, unit, tell, k,
                                 &build->decimation, k->error);
-    enf_graph_free(&graph);
     if (status != ENF_OK) return status;
     build->cell_count = build->decimation.cell_count;
     for (int32_t c = 0; c < complex->cell_count; c++) {
