@@ -62,6 +62,7 @@ static char *print_options(const cli_settings *settings) {
     enf_json_text(&json, "pvs", cli_pvs_methods[settings->pvs]);
     put_tolerance(&json, "weld", settings->weld);
     put_tolerance(&json, "plane_tolerance", settings->plane_tolerance);
+    enf_json_bool(&json, "plain_cells", settings->plain_cells);
     put_texts(&json, "exclude", &settings->exclude);
     put_texts(&json, "detail", &settings->detail);
     enf_json_begin_array(&json, "spawns");
@@ -89,6 +90,7 @@ enf_status cli_job_prepare(cli_job *job, const cli_settings *settings, enf_error
     options->tetrahedralizer = (enf_tetrahedralizer)settings->tetrahedralizer;
     options->heuristic = (enf_heuristic)settings->heuristic;
     options->keep = (enf_keep)settings->keep;
+    options->plain_cells = settings->plain_cells;
     options->threads = settings->threads;
     if (settings->pvs != 0)
         return enf_fail(error, ENF_BAD_USAGE, "--pvs %s: visibility is not built yet; leave --pvs out",

@@ -12,6 +12,7 @@ typedef struct cli_settings {
     int tetrahedralizer, heuristic, keep, pvs, threads;
     const char *stop;
     double weld, plane_tolerance; ///< < 0: not given
+    bool plain_cells;
     cli_texts exclude, detail;
     cli_points spawns;
 } cli_settings;
@@ -51,6 +52,14 @@ extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const
          &(s).plane_tolerance,                                                                                 \
          "D",                                                                                                  \
          "how far points may move to be coplanar again; default 2e-7 of the diagonal",                         \
+         NULL,                                                                                                 \
+         false},                                                                                               \
+        {"--plain-cells",                                                                                      \
+         0,                                                                                                    \
+         CLI_FLAG,                                                                                             \
+         &(s).plain_cells,                                                                                     \
+         NULL,                                                                                                 \
+         "leave fine cells as the cuts make them; otherwise convex ones are joined",                           \
          NULL,                                                                                                 \
          false},                                                                                               \
     {                                                                                                          \

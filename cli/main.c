@@ -2,9 +2,10 @@
 // The program `enfilade`: finds the command and runs it.
 #include "cli/cli.h"
 
-#include "base/memory.h"
-
 #include <errno.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <stdio.h>
 #include <string.h>
 
@@ -49,7 +50,11 @@ static bool is_later(const char *name) {
 }
 
 int main(int argc, char **argv) {
-    enf_memory_map_large_blocks();
+#ifdef M_MMAP_THRESHOLD
+    // Big arrays go back to the system when they are freed, and move without being copied when they grow.
+    // (glibc raises its threshold otherwise as soon as the first one is freed.)
+    mallopt(M_MMAP_THRESHOLD, 128 * 1024);
+#endif
     if (argc < 2) {
         print_usage(stderr);
         return ENF_BAD_USAGE;

@@ -9,11 +9,8 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
-enum { PATH_LENGTH = 1024, LARGE_BLOCK = 1 << 18 };
+enum { PATH_LENGTH = 1024 };
 
 uint64_t enf_memory_peak(void) {
     struct rusage usage;
@@ -29,12 +26,6 @@ uint64_t enf_memory_resident(void) {
     fclose(file);
     long page = sysconf(_SC_PAGESIZE);
     return page > 0 ? resident * (uint64_t)page : 0;
-}
-
-void enf_memory_map_large_blocks(void) {
-#ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, LARGE_BLOCK); // also keeps it from growing with what is freed
-#endif
 }
 
 static void take_least(uint64_t limit, const char *name, uint64_t *least, const char **limiter) {

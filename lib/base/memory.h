@@ -16,9 +16,4 @@ uint64_t enf_memory_resident(void);
 /// nothing is known.
 uint64_t enf_memory_limit(const char **limiter);
 
-/// For programs that handle large arrays, at their start: asks the C library to map large blocks each by
-/// itself. Then freed ones are free at once, and growing ones need not be copied; otherwise the gaps between
-/// blocks that come and go add up to a third of all memory. Concerns the whole process.
-void enf_memory_map_large_blocks(void);
-
 #endif

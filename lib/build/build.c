@@ -102,6 +102,7 @@ static enf_status split(kitchen *k) {
     memset(&k->tets, 0, sizeof k->tets); // taken, or freed
     if (status != ENF_OK) return status;
     k->begun = k->share = 0.5;
+    k->arrangement.plain = k->options->plain_cells;
     status = enf_complex_split(complex, &k->arrangement, &k->crew, k->error);
     if (status != ENF_OK) return status;
     say(k, "%d of %d tetrahedra cut; the others already carry their polygons; %d pieces joined to others",

@@ -30,6 +30,7 @@ typedef struct enf_build_options {
     enf_heuristic heuristic;
     enf_stop stop;
     enf_keep keep;
+    bool plain_cells; ///< leave fine cells as the cuts make them; otherwise convex ones are joined
     int threads;
     int stages;             ///< run only this many, the first; 0: all
     enf_progress *progress; ///< may be null

@@ -73,6 +73,21 @@ static int compare_numbers(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+enum { INSERT_MAX = 32 }; ///< numbers that are sorted by insertion: most cells see a handful
+
+static void sort_numbers(int32_t *numbers, int64_t count) {
+    if (count > INSERT_MAX) {
+        qsort(numbers, (size_t)count, sizeof *numbers, compare_numbers);
+        return;
+    }
+    for (int64_t i = 1; i < count; i++) {
+        int32_t one = numbers[i];
+        int64_t k = i;
+        for (; k > 0 && numbers[k - 1] > one; k--) numbers[k] = numbers[k - 1];
+        numbers[k] = one;
+    }
+}
+
 /// Per cell the polygons whose front it sees, ascending, each once.
 static bool make_sights(enf_complex *complex) {
     size_t cells = (size_t)complex->cell_count;
@@ -96,8 +111,7 @@ static bool make_sights(enf_complex *complex) {
     int64_t kept = 0, begin = 0;
     for (size_t cell = 0; cell < cells; cell++) {
         int64_t end = next[cell + 1];
-        if (end - begin > 1)
-            qsort(complex->seen + begin, (size_t)(end - begin), sizeof *complex->seen, compare_numbers);
+        sort_numbers(complex->seen + begin, end - begin);
         next[cell] = kept;
         for (int64_t i = begin; i < end; i++) {
             if (i == begin || complex->seen[i] != complex->seen[i - 1])

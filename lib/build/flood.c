@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Most polygons of a finely drawn world are facets of the triangulation already, or tiled by a few: these are
 // looked up. Others are flooded: the tetrahedra that a polygon's inside meets are connected through facets,
-// so a walk from one of its corners that enters every neighbour it may meet finds them all, in time
+// so a walk from one of its edges that enters every neighbour it may meet finds them all, in time
 // proportional to what it finds. Polygons go plane by plane, so that a point is held against each plane once.
 #include "build/flood.h"
 
@@ -128,35 +128,40 @@ static contact meets(flooder *w, const int32_t corner[4], stance *at) {
     return at->behind && at->front ? ACROSS : (off & (off - 1)) == 0 ? COVERS : TOUCHES;
 }
 
-/// Is a facet of the tetrahedron between it and the polygon?
-static bool facet_separates(const flooder *w, const int32_t corner[4]) {
+/// The side of the facet opposite corner k on which a point lies: +1 outside of the tetrahedron.
+static int side_of_facet(const flooder *w, const int32_t corner[4], int k, int32_t point) {
     static const int outside[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}; // the back is inside
+    int32_t a = corner[outside[k][0]], b = corner[outside[k][1]], c = corner[outside[k][2]];
+    if (point == a || point == b || point == c) return 0;
     const double *points = w->geometry.points;
+    return enf_points_orient(points + 3 * (size_t)a, points + 3 * (size_t)b, points + 3 * (size_t)c,
+                             points + 3 * (size_t)point);
+}
+
+/// Is a facet of the tetrahedron between it and the polygon, whose plane goes through it? Facets that stay on
+/// one side of the plane do not bound what is between.
+static bool facet_separates(const flooder *w, const int32_t corner[4], const stance *at) {
     for (int k = 0; k < 4; k++) {
-        int32_t a = corner[outside[k][0]], b = corner[outside[k][1]], c = corner[outside[k][2]];
+        unsigned others = 15u & ~(1u << k);
+        if ((at->behind & others) == others || (at->front & others) == others) continue;
         bool apart = true;
-        for (int32_t i = 0; i < w->lines.count && apart; i++) {
-            int32_t point = w->lines.corners[i];
-            if (point == a || point == b || point == c) continue;
-            apart = enf_points_orient(points + 3 * (size_t)a, points + 3 * (size_t)b, points + 3 * (size_t)c,
-                                      points + 3 * (size_t)point) >= 0;
-        }
+        for (int32_t i = 0; i < w->lines.count && apart; i++)
+            apart = side_of_facet(w, corner, k, w->lines.corners[i]) >= 0;
         if (apart) return true;
     }
     return false;
 }
 
-static bool has_corner(const int32_t corner[4], int32_t point) {
-    return corner[0] == point || corner[1] == point || corner[2] == point || corner[3] == point;
-}
-
 // ---------------------------------------------------------------------------------------------- one polygon
 
-static void take_tetrahedron(flooder *w, flood_block *block, const enf_tet_mesh *tets, int32_t t, contact how,
-                             const stance *at) {
+/// How the polygon's inside meets a tetrahedron, which is taken down where that matters later.
+static contact visit(flooder *w, flood_block *block, const enf_tet_mesh *tets, int32_t t,
+                     const int32_t corner[4], stance *at) {
+    contact how = meets(w, corner, at);
     if (how == ACROSS) {
         uint32_t near = at->outside[0] | at->outside[1] | at->outside[2] | at->outside[3];
-        if (!facet_separates(w, tets->corners[t])) add_found(w, block, t, near);
+        if (near && facet_separates(w, corner, at)) return APART;
+        add_found(w, block, t, near);
     } else if (how == COVERS) {
         int opposite = __builtin_ctz(at->behind | at->front);
         uint32_t near = 0;
@@ -164,34 +169,72 @@ static void take_tetrahedron(flooder *w, flood_block *block, const enf_tet_mesh 
         const int32_t facet = tets->facets[t][opposite], *sides = tets->facet_sides[facet];
         if (sides[0] == t || sides[0] < 0) add_hit(w, block, facet, near);
     }
+    return how;
 }
 
-/// From a tetrahedron at the polygon's first corner, around that corner and through all that the polygon may
-/// meet.
-static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *tets, const place *places) {
-    const int32_t mark = w->lines.polygon + 1, corner = w->lines.corners[0];
-    size_t depth = 0;
-    if (!enf_array_reserve(w->stack, w->stack_capacity, 1)) w->failed = true;
-    if (w->failed) return;
-    w->stack[depth++] = tets->point_tetrahedron[corner];
+enum { WALK_MAX = 1000 }; ///< steps; Delaunay tetrahedra cannot lead round in circles, others might
+
+/// A tetrahedron at the polygon's first corner that its first edge enters or touches there: while the edge's
+/// end is beyond a facet at the corner, go through it. -1 if that does not end.
+static int32_t walk_to_edge(const flooder *w, const enf_tet_mesh *tets, const place *places) {
+    const int32_t from = w->lines.corners[0], to = w->lines.corners[1];
+    int32_t t = tets->point_tetrahedron[from], before = -1;
+    for (int step = 0; step < WALK_MAX; step++) {
+        const place *here = &places[t];
+        int k = 0;
+        for (; k < 4; k++) {
+            if (here->corner[k] == from || here->next[k] < 0 || here->next[k] == before) continue;
+            if (side_of_facet(w, here->corner, k, to) > 0) break;
+        }
+        if (k == 4) return t;
+        before = t;
+        t = here->next[k];
+    }
+    return -1;
+}
+
+/// Makes room on the stack for a tetrahedron and its neighbours.
+static bool reserve_stack(flooder *w, size_t depth) {
+    if (!enf_array_reserve(w->stack, w->stack_capacity, depth + 4)) w->failed = true;
+    return !w->failed;
+}
+
+/// Puts all tetrahedra on the stack in which the polygon may begin: those around its first edge, near its
+/// first corner. Returns their number.
+static size_t begin_polygon(flooder *w, const enf_tet_mesh *tets, const place *places) {
+    const int32_t mark = w->lines.polygon + 1, from = w->lines.corners[0], to = w->lines.corners[1];
+    int32_t first = walk_to_edge(w, tets, places);
+    bool lost = first < 0; // then those around the corner
+    size_t count = 0;
+    if (!reserve_stack(w, count)) return 0;
+    w->stack[count++] = lost ? tets->point_tetrahedron[from] : first;
     w->stamp[w->stack[0]] = mark;
+    for (size_t i = 0; i < count && reserve_stack(w, count); i++) {
+        const place *here = &places[w->stack[i]];
+        for (int k = 0; k < 4; k++) {
+            int32_t next = here->next[k];
+            if (here->corner[k] == from || next < 0 || w->stamp[next] == mark) continue;
+            if (!lost && side_of_facet(w, here->corner, k, to) != 0) continue;
+            w->stamp[next] = mark;
+            w->stack[count++] = next;
+        }
+    }
+    return count;
+}
+
+/// Visits all tetrahedra that the polygon may meet.
+static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *tets, const place *places) {
+    const int32_t mark = w->lines.polygon + 1;
+    size_t depth = begin_polygon(w, tets, places);
     while (depth > 0 && !w->failed) {
         int32_t t = w->stack[--depth];
         stance at = {0};
         const place *here = &places[t];
-        contact how = meets(w, here->corner, &at);
-        take_tetrahedron(w, block, tets, t, how, &at);
-        bool around = has_corner(here->corner, corner);
-        if (how == APART && !around) continue;
-        if (!enf_array_reserve(w->stack, w->stack_capacity, depth + 4)) {
-            w->failed = true;
-            return;
-        }
+        if (visit(w, block, tets, t, here->corner, &at) == APART) continue;
+        if (!reserve_stack(w, depth)) return;
         for (int k = 0; k < 4; k++) {
             int32_t next = here->next[k];
-            if (next < 0 || w->stamp[next] == mark) continue;
-            bool star = around && here->corner[k] != corner;
-            if (!star && !reaches(w, &at, 15u & ~(1u << k))) continue;
+            if (next < 0 || w->stamp[next] == mark || !reaches(w, &at, 15u & ~(1u << k))) continue;
             w->stamp[next] = mark;
             w->stack[depth++] = next;
         }

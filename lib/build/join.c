@@ -13,7 +13,7 @@
 
 /// Cells are joined where the opening between them is at least this share of either's shadow on it: the least
 /// that joins most parts of cut tetrahedra and leaves the thesis's rooms apart.
-#define OPENING_MIN 0.5
+#define OPENING_MIN 0.25
 
 static int32_t apex(const enf_tet_mesh *tets, int32_t t, int32_t facet) {
     int k = 0;
@@ -153,16 +153,17 @@ static void facet_area(const enf_subdivision *s, int32_t f, double area[3]) {
     }
 }
 
-/// The area of the cell's shadow along a direction: each line through a convex cell meets its surface twice.
-static double shadow(const enf_subdivision *s, int32_t cell, const double direction[3]) {
+/// Is the area of the cell's shadow along a direction more than this? Each line through a convex cell meets
+/// its surface twice.
+static bool shadow_exceeds(const enf_subdivision *s, int32_t cell, const double direction[3], double area) {
     double sum = 0;
-    for (int32_t f = s->cell_facet[cell], next; f >= 0; f = next) {
-        double area[3];
+    for (int32_t f = s->cell_facet[cell], next; f >= 0 && sum <= 2 * area; f = next) {
+        double part[3];
         next = s->facets[f].next[s->facets[f].cell[1] == cell];
-        facet_area(s, f, area);
-        sum += fabs(area[0] * direction[0] + area[1] * direction[1] + area[2] * direction[2]);
+        facet_area(s, f, part);
+        sum += fabs(part[0] * direction[0] + part[1] * direction[1] + part[2] * direction[2]);
     }
-    return sum / 2;
+    return sum > 2 * area;
 }
 
 /// Is the way from one cell to the other narrower than one of them? Then it may be a door, and is not for us
@@ -180,8 +181,8 @@ static bool is_door(const enf_subdivision *s, int32_t f) {
         facet_area(s, g, area);
         opening += fabs(area[0] * direction[0] + area[1] * direction[1] + area[2] * direction[2]);
     }
-    return shadow(s, behind, direction) * OPENING_MIN > opening ||
-           shadow(s, front, direction) * OPENING_MIN > opening;
+    return shadow_exceeds(s, behind, direction, opening / OPENING_MIN) ||
+           shadow_exceeds(s, front, direction, opening / OPENING_MIN);
 }
 
 bool enf_joiner_try(enf_joiner *joiner, enf_subdivision *s, int32_t f) {

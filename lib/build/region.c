@@ -159,20 +159,18 @@ static bool seal_cracks(enf_regions *regions, enf_complex *complex, double crack
 }
 
 /// Regions are the components over the pieces that are open now, numbered by their smallest cell.
-static bool colour_cells(enf_regions *regions, enf_complex *complex, double crack) {
+static bool colour_cells(enf_regions *regions, enf_complex *complex, double crack, bool *gap) {
     int32_t cells = complex->cell_count;
     int32_t *parent = enf_array_new((size_t)cells, sizeof *parent);
     uint8_t *has = enf_array_zeroed((size_t)cells, sizeof *has);
-    bool *gap = enf_array_zeroed((size_t)cells, sizeof *gap);
     crack_list cracks = {0};
-    bool good = parent && has && gap && (!(crack > 0) || enf_gaps_find(complex, crack, gap));
+    bool good = parent && has && (!(crack > 0) || enf_gaps_find(complex, crack, gap));
     if (good) {
         enf_sets_start(parent, cells);
         good = join_cells(complex, crack, gap, parent, has, &cracks) &&
                seal_cracks(regions, complex, crack, gap, &cracks, parent, has);
     }
     free(has);
-    free(gap);
     free(cracks.pieces);
     regions->cell_region = parent; // every link leads to a smaller cell, which has its region by then
     for (int32_t c = 0; good && c < cells; c++)
@@ -306,14 +304,16 @@ static enf_status keep_regions(enf_regions *regions, enf_keep keep, enf_error *e
 enf_status enf_regions_colour(enf_regions *regions, enf_complex *complex, const enf_mesh *mesh,
                               const enf_tet_mesh *tets, enf_keep keep, double crack, enf_error *error) {
     memset(regions, 0, sizeof *regions);
-    bool good = colour_cells(regions, complex, crack) && allocate(regions);
+    bool *gap = enf_array_zeroed((size_t)complex->cell_count, sizeof *gap);
+    bool good = gap && colour_cells(regions, complex, crack, gap) && allocate(regions);
     if (good) {
-        good = enf_regions_measure(regions, complex, mesh, crack);
+        good = enf_regions_measure(regions, complex, mesh, gap, crack);
     }
     if (good) {
         judge(regions);
         good = place_spawns(regions, complex, mesh, tets) && enf_regions_trace_leak(regions, complex, mesh);
     }
+    free(gap);
     enf_status status = good ? keep_regions(regions, keep, error) : enf_fail_memory(error, "the regions");
     if (status != ENF_OK) enf_regions_free(regions);
     return status;

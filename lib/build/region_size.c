@@ -15,6 +15,7 @@ typedef struct survey {
     enf_regions *regions;
     const enf_complex *complex;
     const enf_mesh *mesh;
+    const bool *gap;
     enf_body_size *bodies; ///< per region; the surface is what is closed of it
     int32_t *tip;          ///< per region: a vertex of the boundary, -1 = none yet
     enf_votes votes;
@@ -57,7 +58,7 @@ static bool add_occluder(survey *s, int32_t facet, int32_t piece, const int32_t 
             regions->touches_outside[region[side]] = true;
             continue;
         }
-        s->bodies[region[side]].surface += size;
+        if (!s->gap[s->complex->facet_cell[facet][side]]) s->bodies[region[side]].surface += size;
         if (cover < 0) continue;
         bool front = s->complex->cover_side[cover] == side;
         *(front ? &regions->front_area[region[side]] : &regions->back_area[region[side]]) += size;
@@ -90,8 +91,8 @@ static bool survey_pieces(survey *s) {
 }
 
 bool enf_regions_measure(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                         double crack) {
-    survey s = {.regions = regions, .complex = complex, .mesh = mesh};
+                         const bool *gap, double crack) {
+    survey s = {.regions = regions, .complex = complex, .mesh = mesh, .gap = gap};
     size_t count = (size_t)regions->region_count;
     s.bodies = enf_array_new(count, sizeof *s.bodies);
     s.tip = enf_array_new(count, sizeof *s.tip);

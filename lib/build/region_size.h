@@ -6,8 +6,9 @@
 #include "build/region.h"
 
 /// Fills volume, front_area, back_area, touches_outside, hairline, winding and ambiguous (allocated, all
-/// zero) of regions whose cells are coloured. False without memory.
+/// zero) of regions whose cells are coloured. Cells in gaps (gap.h) add nothing to the surface that tells a
+/// hairline: what layer went with which region says nothing of the region. False without memory.
 bool enf_regions_measure(enf_regions *regions, const enf_complex *complex, const enf_mesh *mesh,
-                         double crack);
+                         const bool *gap, double crack);
 
 #endif

@@ -258,6 +258,38 @@ static int32_t *list_members(cutter *c) {
     return next;
 }
 
+enum {
+    WEIGHED_MAX = 24
+}; ///< candidates that are put in order by what they split; more stay in that of planes
+
+/// Puts first the polygons whose planes split the fewest of the others; equals stay as they are.
+static void weigh_candidates(cutter *c, const enf_candidates *candidates, size_t count) {
+    const enf_arrangement *arrangement = c->arrangement;
+    int splits[WEIGHED_MAX];
+    if (count < 3 || count > WEIGHED_MAX) return; // of two that cross, either order makes four cells of one
+    for (size_t i = 0; i < count; i++) {
+        int32_t plane = arrangement->polygon_plane[candidates->order[c->candidates[i].rank]];
+        splits[i] = 0;
+        for (size_t k = 0; k < count; k++) {
+            int32_t other = candidates->order[c->candidates[k].rank];
+            if (arrangement->polygon_plane[other] == plane) continue;
+            enf_polygon_lines_take(&c->lines, arrangement, other, 0);
+            splits[i] += corner_sides(c, plane) == 3;
+        }
+    }
+    for (size_t i = 1; i < count; i++) {
+        enf_candidate one = c->candidates[i];
+        int split = splits[i];
+        size_t k = i;
+        for (; k > 0 && splits[k - 1] > split; k--) {
+            c->candidates[k] = c->candidates[k - 1];
+            splits[k] = splits[k - 1];
+        }
+        c->candidates[k] = one;
+        splits[k] = split;
+    }
+}
+
 /// Where the polygon stays out of some tetrahedra of the cell, nothing is known of its lines there: wants
 /// only those that have a corner of the cell outside.
 static void narrow_lines(cutter *c, const int32_t *next, int32_t first) {
@@ -279,6 +311,7 @@ static void cut_by_all(cutter *c, const enf_candidates *candidates, size_t count
         .cell = cell, .first_cell = (int32_t)space->cell_count, .first_node = (int32_t)space->node_count};
     space->plane = -1;
     c->hit_count = 0;
+    weigh_candidates(c, candidates, count);
     for (size_t i = 0; i < count && !c->failed; i++) {
         int32_t polygon = candidates->order[c->candidates[i].rank];
         int32_t plane = c->arrangement->polygon_plane[polygon];

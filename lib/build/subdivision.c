@@ -372,19 +372,26 @@ static bool sort_facet(enf_subdivision *s, int32_t f, int32_t cell, int32_t ahea
     }
 }
 
+/// Do the facets that gave two planes their names lie in one plane?
+static bool coincide(enf_subdivision *s, int32_t plane, int32_t other) {
+    for (int i = 0; i < 3; i++) {
+        if (enf_geometry_side(&s->geometry, s->geometry.planes[other][i], plane) != 0) return false;
+    }
+    return true;
+}
+
 /// Facets of joined tetrahedra may lie in one plane: parts of the outline along them are one straight line.
 static void straighten(enf_subdivision *s, int32_t first) {
     int32_t h = first;
     do {
-        enf_half *next = &s->halves[s->halves[h].next];
-        int32_t plane = s->halves[h].edge_plane, other = next->edge_plane;
+        int32_t next = s->halves[h].next, plane = s->halves[h].edge_plane, other = s->halves[next].edge_plane;
         if (plane != other && plane < s->tetrahedron_planes && other < s->tetrahedron_planes &&
-            enf_geometry_side(&s->geometry, s->halves[next->next].vertex, plane) == 0) {
+            coincide(s, plane, other)) {
             // The line gets one name; it may have begun before `first`, so all of the other name go.
-            for (int32_t k = s->halves[h].next; s->halves[k].edge_plane == other; k = s->halves[k].next)
+            for (int32_t k = next; s->halves[k].edge_plane == other; k = s->halves[k].next)
                 s->halves[k].edge_plane = plane;
         }
-        h = s->halves[h].next;
+        h = next;
     } while (h != first);
 }
 
