@@ -7,6 +7,9 @@
 
 #include <math.h>
 
+/// Whatever the points, a determinant is not off by more: its magnitude below is at most 6 * 2^162.
+#define SURE 0x1p115
+
 static int orient_exactly(const double a[3], const double b[3], const double c[3], const double d[3]) {
     int64_t u[3], v[3], w[3];
     for (int i = 0; i < 3; i++) {
@@ -40,6 +43,7 @@ int enf_points_orient(const double a[3], const double b[3], const double c[3], c
     double uy_vz = uy * vz, uz_vy = uz * vy, uz_vx = uz * vx, ux_vz = ux * vz, ux_vy = ux * vy,
            uy_vx = uy * vx;
     double determinant = wx * (uy_vz - uz_vy) + wy * (uz_vx - ux_vz) + wz * (ux_vy - uy_vx);
+    if (fabs(determinant) > SURE) return determinant > 0 ? 1 : -1;
     double magnitude = fabs(wx) * (fabs(uy_vz) + fabs(uz_vy)) + fabs(wy) * (fabs(uz_vx) + fabs(ux_vz)) +
                        fabs(wz) * (fabs(ux_vy) + fabs(uy_vx));
     // Each term is a product of three rounded differences (3u), two rounded products (2u) and three rounded

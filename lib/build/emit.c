@@ -125,21 +125,32 @@ static bool add_covers(enf_settler *s, int32_t first) {
     return true;
 }
 
+/// The facet's outline.
+static bool add_loop(enf_settler *s, int32_t facet) {
+    enf_loops *loops = &s->complex->facets;
+    if (s->space->facets[facet].first == ENF_FACET_WHOLE) {
+        int32_t corner[3], plane[3];
+        enf_subdivision_triangle(&s->arrangement->tets, s->space->facets[facet].source, corner, plane);
+        const enf_corner corners[3] = {{corner[1], plane[1]}, {corner[2], plane[2]}, {corner[0], plane[0]}};
+        return enf_loops_append(loops, corners, 3);
+    }
+    s->pool.corner_count = 0;
+    enf_loop loop = enf_facet_loop(s->space, facet, &s->pool);
+    return !s->pool.failed && enf_loops_append(loops, s->pool.corners + loop.first, loop.count);
+}
+
 bool enf_emit_facet(enf_settler *s, int32_t facet) {
     enf_complex *complex = s->complex;
     const enf_share share = s->space->facets[facet];
     int32_t added = complex->facets.count;
     size_t count = (size_t)added + 1;
-    s->pool.corner_count = 0;
-    enf_loop loop = enf_facet_loop(s->space, facet, &s->pool);
-    if (s->pool.failed || !enf_array_reserve(complex->facet_plane, s->plane_capacity, count) ||
+    if (!enf_array_reserve(complex->facet_plane, s->plane_capacity, count) ||
         !enf_array_reserve(complex->facet_cell, s->cell_capacity, count) ||
         !enf_array_reserve(complex->facet_cover, s->facet_cover_capacity, count + 1) ||
-        !enf_array_reserve(complex->facet_piece, s->facet_piece_capacity, count + 1) ||
-        !enf_loops_append(&complex->facets, s->pool.corners, loop.count)) {
+        !enf_array_reserve(complex->facet_piece, s->facet_piece_capacity, count + 1) || !add_loop(s, facet)) {
         return false;
     }
-    complex->facet_plane[added] = loop.plane;
+    complex->facet_plane[added] = enf_subdivision_plane(s->space, facet);
     complex->facet_cell[added][0] = share.cell[0];
     complex->facet_cell[added][1] = share.cell[1];
     complex->facet_cover[added] = complex->covers.count;

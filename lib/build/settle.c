@@ -37,8 +37,8 @@ bool enf_settler_start(enf_settler *s, const enf_arrangement *arrangement, enf_s
 
 void enf_settler_free(enf_settler *s) {
     s->pool.geometry.crossings = NULL; // the space's
-    void *arrays[] = {s->hit_first, s->hits,  s->covers,  s->inner, s->next_inner,
-                      s->inner_of,  s->outer, s->touched, s->open,  s->rest};
+    void *arrays[] = {s->hit_first, s->hits,    s->covers,    s->inner, s->next_inner, s->inner_of,
+                      s->outer,     s->touched, s->waits_for, s->open,  s->rest};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     enf_loops_free(&s->loops);
     enf_joiner_free(&s->joiner);
@@ -62,6 +62,7 @@ static bool push(int32_t **list, size_t *count, size_t *capacity, int32_t value)
 /// Lists a new cell's facets with both sides cut.
 static bool list_facets(enf_settler *s, const enf_cut_cell *cut, int32_t cell) {
     const enf_subdivision *space = s->space;
+    int32_t last = -1;
     for (int32_t f = space->cell_facet[cell], next; f >= 0; f = next) {
         const enf_share *facet = &space->facets[f];
         int side = facet->cell[1] == cell;
@@ -71,8 +72,11 @@ static bool list_facets(enf_settler *s, const enf_cut_cell *cut, int32_t cell) {
             if (side == 0 && !push(&s->inner, &s->inner_count, &s->inner_capacity, f)) return false;
         } else if (other < 0 || space->cell_state[other] != ENF_CELL_WAITS) {
             if (!push(&s->outer, &s->outer_count, &s->outer_capacity, f)) return false;
+        } else if (other > last) {
+            last = other;
         }
     }
+    s->waits_for[cell] = last;
     return push(&s->touched, &s->touched_count, &s->touched_capacity, cell);
 }
 
@@ -144,17 +148,27 @@ static void join_all(enf_settler *s) {
     for (size_t i = s->outer_count; i-- > 0;) try_join(s, s->outer[i]);
 }
 
-/// Closes a cell if all around it has been cut, and emits the facets that it shares with closed ones.
-static bool close_cell(enf_settler *s, int32_t cell) {
-    enf_subdivision *space = s->space;
-    if (space->cell_state[cell] != ENF_CELL_CUT || space->cell_facet[cell] < 0) return true;
+/// Does the cell have a neighbour that is still to be cut? They are cut in order, so the last one is
+/// remembered and asked first.
+static bool waits(enf_settler *s, int32_t cell) {
+    const enf_subdivision *space = s->space;
+    int32_t *last = &s->waits_for[cell];
+    if (*last >= 0 && space->cell_state[*last] == ENF_CELL_WAITS) return true;
+    *last = -1;
     for (int32_t f = space->cell_facet[cell], next; f >= 0; f = next) {
         const enf_share *facet = &space->facets[f];
         int side = facet->cell[1] == cell;
         int32_t other = facet->cell[1 - side];
         next = facet->next[side];
-        if (other >= 0 && space->cell_state[other] == ENF_CELL_WAITS) return true;
+        if (other > *last && space->cell_state[other] == ENF_CELL_WAITS) *last = other;
     }
+    return *last >= 0;
+}
+
+/// Closes a cell if all around it has been cut, and emits the facets that it shares with closed ones.
+static bool close_cell(enf_settler *s, int32_t cell) {
+    enf_subdivision *space = s->space;
+    if (space->cell_state[cell] != ENF_CELL_CUT || space->cell_facet[cell] < 0 || waits(s, cell)) return true;
     space->cell_state[cell] = ENF_CELL_CLOSED;
     for (int32_t f = space->cell_facet[cell], next; f >= 0; f = next) {
         const enf_share *facet = &space->facets[f];
@@ -169,14 +183,16 @@ static bool close_cell(enf_settler *s, int32_t cell) {
 bool enf_settler_settle(enf_settler *s, const enf_cut_cell *cut) {
     enf_subdivision *space = s->space;
     size_t vertices = (size_t)space->geometry.point_count + (size_t)space->geometry.crossing_count;
-    if (!enf_polygon_lines_reserve(&s->lines, vertices) || !list_all(s, cut) || !cover_inner(s, cut) ||
-        !cover_outer(s)) {
+    if (!enf_polygon_lines_reserve(&s->lines, vertices) ||
+        !enf_array_reserve(s->waits_for, s->waits_capacity, space->cell_count) || !list_all(s, cut) ||
+        !cover_inner(s, cut) || !cover_outer(s)) {
         return false;
     }
     for (size_t i = 0; i < s->outer_count; i++) { // before facets go
         const enf_share *facet = &space->facets[s->outer[i]];
         int32_t beyond = facet->cell[is_new(cut, facet->cell[0])];
-        if (beyond >= 0 && !push(&s->touched, &s->touched_count, &s->touched_capacity, beyond)) return false;
+        if (beyond < 0 || beyond == s->touched[s->touched_count - 1]) continue;
+        if (!push(&s->touched, &s->touched_count, &s->touched_capacity, beyond)) return false;
     }
     if (!enf_joiner_reserve(&s->joiner, space->cell_count)) return false;
     if (s->join) join_all(s);

@@ -38,6 +38,9 @@ typedef struct enf_settler {
     int32_t free_cover; ///< list of those that can be used again; -1: none
     enf_loops loops;    ///< of covers that are a part of their facet
 
+    int32_t *waits_for; ///< per cell that has been cut: a neighbour that had not been then, or -1
+    size_t waits_capacity;
+
     // Scratch of one cell that was cut.
     int32_t *inner, *next_inner; ///< its facets on its own cuts; the next one on the same cut
     size_t inner_count, inner_capacity, next_inner_capacity;

@@ -184,6 +184,24 @@ static bool join_tetrahedra(cutter *c, const enf_candidates *candidates) {
     return good;
 }
 
+/// Facets that cutting, joining or clipping will look at closely: all but those between two tetrahedra that
+/// no polygon enters, where the polygons on them, if any, cover the whole. free() it; null without memory.
+static uint8_t *mark_facets(const enf_arrangement *arrangement, const enf_candidates *candidates) {
+    const enf_tet_mesh *tets = &arrangement->tets;
+    uint8_t *marked = enf_array_zeroed((size_t)tets->facet_count, sizeof *marked);
+    for (int32_t t = 0; marked && t < tets->count; t++) {
+        if (candidates->offset[t] == candidates->offset[t + 1]) continue;
+        for (int k = 0; k < 4; k++) marked[tets->facets[t][k]] = 1;
+    }
+    for (size_t i = 0; marked && i < arrangement->hit_count; i++) {
+        const enf_hit *hit = &arrangement->hits[i];
+        int64_t corners = arrangement->mesh->polygon_corner[hit->polygon + 1] -
+                          arrangement->mesh->polygon_corner[hit->polygon];
+        if (hit->lines || corners > ENF_LINES_FEW) marked[hit->source] = 1;
+    }
+    return marked;
+}
+
 static int compare_ranks(const void *a, const void *b) {
     const enf_candidate *x = a, *y = b;
     return (x->rank > y->rank) - (x->rank < y->rank);
@@ -368,8 +386,10 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     enf_crew watched = {.threads = crew->threads, .watch = watch_half, .user = &half};
     bool stopped, good = enf_candidates_find(&candidates, arrangement, &watched, &stopped);
     half = (half_watch){.crew = crew, .begun = 0.3, .share = 0.7};
-    good = good && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets,
-                                         (size_t)candidates.offset[arrangement->tets.count]);
+    uint8_t *marked = good ? mark_facets(arrangement, &candidates) : NULL;
+    good = marked && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets, marked,
+                                           (size_t)candidates.offset[arrangement->tets.count]);
+    free(marked);
     good = good && enf_polygon_lines_reserve(&c.lines, arrangement->mesh->point_count);
     good = good && enf_settler_start(&c.settler, arrangement, c.space, complex);
     c.settler.join = !arrangement->plain;

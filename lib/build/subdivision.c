@@ -61,8 +61,9 @@ static int32_t new_edge(enf_subdivision *s) {
     return edge;
 }
 
-void enf_subdivision_remove(enf_subdivision *s, int32_t f) {
-    int32_t first = s->facets[f].first, h = first, last = first;
+/// Takes a facet's halves out of the lists at their edges.
+static void remove_halves(enf_subdivision *s, int32_t first) {
+    int32_t h = first, last;
     do {
         int32_t edge = s->halves[h].edge, *link = &s->edge_half[edge];
         while (*link != h) link = &s->halves[*link].radial;
@@ -76,28 +77,42 @@ void enf_subdivision_remove(enf_subdivision *s, int32_t f) {
     } while (h != first);
     s->halves[last].next = s->free_half;
     s->free_half = first;
-    s->facets[f].first = -1;
+}
+
+void enf_subdivision_remove(enf_subdivision *s, int32_t f) {
+    if (s->facets[f].first != ENF_FACET_WHOLE) remove_halves(s, s->facets[f].first);
+    s->facets[f].first = ENF_FACET_GONE;
     s->facets[f].source = s->free_facet;
     s->free_facet = f;
 }
 
 // ---------------------------------------------------------------------------------------------- setting out
 
-/// The facet opposite corner k of tetrahedron t as three halves, 3 * facet + i; edges come later.
-static void add_tetrahedron_facet(enf_subdivision *s, const enf_tet_mesh *tets, int32_t t, int k) {
-    int32_t facet = tets->facets[t][k];
+void enf_subdivision_triangle(const enf_tet_mesh *tets, int32_t facet, int32_t corner[3],
+                              int32_t edge_plane[3]) {
+    const int32_t *sides = tets->facet_sides[facet];
+    int32_t t = sides[0] >= 0 ? sides[0] : sides[1];
     for (int i = 0; i < 3; i++) {
         // The edge to the next corner lies on the face opposite the third one.
         int32_t third = tets->facet_corners[facet][(i + 2) % 3];
         int opposite = 0;
         while (tets->corners[t][opposite] != third) opposite++;
-        s->halves[3 * (size_t)facet + (size_t)i] = (enf_half){.vertex = tets->facet_corners[facet][i],
-                                                              .next = 3 * facet + (i + 1) % 3,
-                                                              .edge_plane = tets->facets[t][opposite],
-                                                              .facet = facet};
+        corner[i] = tets->facet_corners[facet][i];
+        edge_plane[i] = tets->facets[t][opposite];
     }
-    s->facets[facet] = (enf_share){.source = facet, .next = {-1, -1}, .first = 3 * facet, .cover = -1};
+}
+
+/// A facet of the tetrahedra, with three halves if it is to have any; edges come later.
+static void add_tetrahedron_facet(enf_subdivision *s, const enf_tet_mesh *tets, int32_t facet, bool halves) {
+    int32_t first = halves ? (int32_t)s->half_count : ENF_FACET_WHOLE, corner[3], edge_plane[3];
+    s->facets[facet] = (enf_share){.source = facet, .next = {-1, -1}, .first = first, .cover = -1};
     for (int side = 0; side < 2; side++) s->facets[facet].cell[side] = tets->facet_sides[facet][side];
+    if (!halves) return;
+    enf_subdivision_triangle(tets, facet, corner, edge_plane);
+    for (int i = 0; i < 3; i++) {
+        s->halves[s->half_count++] = (enf_half){
+            .vertex = corner[i], .next = first + (i + 1) % 3, .edge_plane = edge_plane[i], .facet = facet};
+    }
 }
 
 /// Gives halves between the same two vertices the same edge. Halves are first listed by their lower vertex
@@ -139,7 +154,7 @@ static bool pair_halves(enf_subdivision *s) {
 }
 
 bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, const enf_tet_mesh *tets,
-                           size_t cuts) {
+                           const uint8_t *marked, size_t cuts) {
     memset(s, 0, sizeof *s);
     s->geometry = *geometry;
     size_t facets = (size_t)tets->facet_count, count = (size_t)tets->count;
@@ -163,19 +178,13 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
         return false;
     }
     memset(s->vertex_sign, 0, points * sizeof *s->vertex_sign);
-    s->half_count = 3 * facets;
     s->facet_count = facets;
     s->cell_count = count;
+    for (size_t f = 0; f < facets; f++) add_tetrahedron_facet(s, tets, (int32_t)f, marked[f]);
     for (int32_t t = 0; t < tets->count; t++) {
         s->tetrahedron_root[t] = s->cell_parent[t] = -1 - t;
         s->cell_state[t] = ENF_CELL_WAITS;
         s->cell_facet[t] = -1;
-        for (int k = 0; k < 4; k++) {
-            int32_t facet = tets->facets[t][k], front = tets->facet_sides[facet][1] == t;
-            if (!front || tets->facet_sides[facet][0] < 0) add_tetrahedron_facet(s, tets, t, k);
-        }
-    }
-    for (int32_t t = 0; t < tets->count; t++) {
         for (int k = 0; k < 4; k++) {
             int32_t facet = tets->facets[t][k], front = tets->facet_sides[facet][1] == t;
             s->facets[facet].next[front] = s->cell_facet[t];
@@ -216,16 +225,18 @@ int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
         const enf_share *facet = &s->facets[f];
         next = facet->next[facet->cell[1] == cell];
         if (!enf_array_reserve(s->shares, s->share_capacity, s->share_count + 1)) return -1;
-        s->shares[s->share_count++] = f;
+        enf_beside *beside = &s->shares[s->share_count++];
+        *beside = (enf_beside){.facet = f};
         int32_t h = facet->first, from = s->halves[h].vertex;
         int sign = enf_subdivision_sign(s, from);
         do {
-            behind |= sign < 0;
-            front |= sign > 0;
+            beside->behind |= sign < 0;
+            beside->front |= sign > 0;
             int32_t after = s->halves[h].next, to = s->halves[after].vertex;
             int sign_to = enf_subdivision_sign(s, to);
             if (sign * sign_to < 0 && !note_cut_edge(s, h, from, to)) return -1;
             if (sign == 0) {
+                beside->along |= sign_to == 0;
                 if (!enf_array_reserve(s->touching, s->touching_capacity, s->touching_count + 1)) return -1;
                 s->touching[s->touching_count++] = from;
             }
@@ -233,6 +244,8 @@ int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
             from = to;
             sign = sign_to;
         } while (h != facet->first);
+        behind |= beside->behind;
+        front |= beside->front;
     }
     return behind && front;
 }
@@ -334,42 +347,47 @@ static void hang(enf_subdivision *s, int32_t f, int side, int32_t cell) {
     s->cell_facet[cell] = f;
 }
 
-/// Sorts one facet of the cell to the cell behind or the one in front, or cuts it and does both.
-static bool sort_facet(enf_subdivision *s, int32_t f, int32_t cell, int32_t ahead) {
-    int side = s->facets[f].cell[1] == cell;
-    int32_t into = -1, out = -1, touching = -1, first = s->facets[f].first, h = first;
-    bool behind = false, front = false;
+static int known_sign(const enf_subdivision *s, int32_t half) {
+    return (s->vertex_sign[s->halves[half].vertex] & 3) - 1;
+}
+
+/// Cuts a facet that has corners on both sides, after its edges have been.
+static bool divide_facet(enf_subdivision *s, int32_t f, int32_t cell, int32_t ahead) {
+    int32_t into = -1, out = -1, first = s->facets[f].first, h = first;
     do {
         int32_t next = s->halves[h].next;
-        int sign = (s->vertex_sign[s->halves[h].vertex] & 3) - 1,
-            sign_to = (s->vertex_sign[s->halves[next].vertex] & 3) - 1;
-        behind |= sign < 0;
-        front |= sign > 0;
-        if (sign == 0 && sign_to > 0) into = h;
-        if (sign == 0 && sign_to < 0) out = h;
-        if (sign == 0 && sign_to == 0) touching = h;
+        if (known_sign(s, h) == 0) {
+            int sign = known_sign(s, next);
+            if (sign > 0) into = h;
+            if (sign < 0) out = h;
+        }
         h = next;
     } while (h != first);
-    int32_t plane = enf_subdivision_plane(s, f);
-    if (behind && front) {
-        int32_t g = split_facet(s, f, into, out), across = s->facets[f].cell[1 - side];
-        if (g < 0) return false;
-        if (across >= 0) s->facets[f].next[1 - side] = g; // beside it in the list of the cell beyond
-        hang(s, f, side, cell);
-        hang(s, g, side, ahead);
-        return outline_from(s, s->facets[f].first, side, plane);
-    }
-    hang(s, f, side, front ? ahead : cell);
-    if (front || touching < 0) return true;
-    for (h = first;;) { // an edge on the plane may be several
+    int side = s->facets[f].cell[1] == cell;
+    int32_t g = split_facet(s, f, into, out), across = s->facets[f].cell[1 - side];
+    if (g < 0) return false;
+    if (across >= 0) s->facets[f].next[1 - side] = g; // beside it in the list of the cell beyond
+    hang(s, f, side, cell);
+    hang(s, g, side, ahead);
+    return outline_from(s, s->facets[f].first, side, enf_subdivision_plane(s, f));
+}
+
+/// Sorts one facet of the cell to the cell behind or the one in front, or cuts it and does both.
+static bool sort_facet(enf_subdivision *s, const enf_beside *beside, int32_t cell, int32_t ahead) {
+    int32_t f = beside->facet, first = s->facets[f].first, h = first;
+    if (beside->behind && beside->front) return divide_facet(s, f, cell, ahead);
+    int side = s->facets[f].cell[1] == cell;
+    hang(s, f, side, beside->front ? ahead : cell);
+    if (beside->front || !beside->along) return true;
+    do { // an edge on the plane may be several
         int32_t next = s->halves[h].next;
-        if ((s->vertex_sign[s->halves[h].vertex] & 3) == 1 &&
-            (s->vertex_sign[s->halves[next].vertex] & 3) == 1 && !outline_from(s, h, side, plane)) {
+        if (known_sign(s, h) == 0 && known_sign(s, next) == 0 &&
+            !outline_from(s, h, side, enf_subdivision_plane(s, f))) {
             return false;
         }
         h = next;
-        if (h == first) return true;
-    }
+    } while (h != first);
+    return true;
 }
 
 /// Do the facets that gave two planes their names lie in one plane?
@@ -457,7 +475,7 @@ int32_t enf_subdivision_cut(enf_subdivision *s, int32_t cell) {
     s->cell_facet[cell] = s->cell_facet[ahead] = -1;
     s->outline_count = 0;
     for (size_t i = 0; i < s->share_count; i++) {
-        if (!sort_facet(s, s->shares[i], cell, ahead)) return -1;
+        if (!sort_facet(s, &s->shares[i], cell, ahead)) return -1;
     }
     return add_cut_facet(s, node, cell, ahead) ? node : -1;
 }

@@ -24,9 +24,14 @@ typedef struct enf_share {
     int32_t source;  ///< >= 0: lies on this facet of the tetrahedra; < 0: on the cut of node -1 - source
     int32_t cell[2]; ///< behind, in front; -1: outside the hull
     int32_t next[2]; ///< the next facet around that cell; -1: the last
-    int32_t first;   ///< a half; -1: the facet is gone
+    int32_t first;   ///< a half; or one of the two below
     int32_t cover;   ///< the owner's: see settle.c
 } enf_share;
+
+enum {
+    ENF_FACET_GONE = -1,
+    ENF_FACET_WHOLE = -2, ///< a facet of the tetrahedra, as it was: has no halves
+};
 
 enum { ENF_CELL_WAITS, ENF_CELL_CUT, ENF_CELL_CLOSED }; ///< what becomes of a cell: see settle.h
 
@@ -35,6 +40,13 @@ typedef struct enf_cut_edge {
     int32_t half, edge; ///< a half on the edge
     int32_t vertex;     ///< the crossing with the plane, if it has been made, else -1
 } enf_cut_edge;
+
+/// A facet of the cell that is held against the plane.
+typedef struct enf_beside {
+    int32_t facet;
+    bool behind, front; ///< has corners there
+    bool along;         ///< has an edge on the plane
+} enf_beside;
 
 typedef struct enf_subdivision {
     enf_geometry geometry; ///< points, planes and crossings; the vertices
@@ -66,7 +78,7 @@ typedef struct enf_subdivision {
     size_t sign_capacity;
 
     // Scratch of one cell: its facets, its edges that the plane crosses, and the outline of the cut.
-    int32_t *shares;
+    enf_beside *shares;
     size_t share_count, share_capacity;
     enf_cut_edge *cut_edges;
     size_t cut_edge_count, cut_edge_capacity;
@@ -81,10 +93,11 @@ typedef struct enf_subdivision {
 } enf_subdivision;
 
 /// The tetrahedra themselves as cells, cell t for tetrahedron t. The geometry must hold points and the planes
-/// of the tetrahedra's facets, plane f for facet f. About how many cuts there will be saves moving arrays.
-/// False without memory; free it in any case.
+/// of the tetrahedra's facets, plane f for facet f. Only marked facets get halves: those of tetrahedra that
+/// may be cut or joined, and others that must be looked at closely. About how many cuts there will be saves
+/// moving arrays. False without memory; free it in any case.
 bool enf_subdivision_start(enf_subdivision *subdivision, const enf_geometry *geometry,
-                           const enf_tet_mesh *tets, size_t cuts);
+                           const enf_tet_mesh *tets, const uint8_t *marked, size_t cuts);
 void enf_subdivision_free(enf_subdivision *subdivision);
 
 /// Frees all but the vertices and the trees of cuts.
@@ -119,6 +132,11 @@ int32_t enf_subdivision_cut(enf_subdivision *subdivision, int32_t cell);
 /// Takes a facet out of the lists at its edges; its number, its halves' and those of edges without facets
 /// will be used again. It stays in the lists of its cells.
 void enf_subdivision_remove(enf_subdivision *subdivision, int32_t facet);
+
+/// Where a facet of the tetrahedra has its three sides: corner i of it, and the plane (of another facet) that
+/// holds the edge from there to the next.
+void enf_subdivision_triangle(const enf_tet_mesh *tets, int32_t facet, int32_t corner[3],
+                              int32_t edge_plane[3]);
 
 /// The plane that a facet lies on.
 static inline int32_t enf_subdivision_plane(const enf_subdivision *subdivision, int32_t facet) {
