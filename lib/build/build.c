@@ -26,7 +26,6 @@ typedef struct kitchen {
     enf_error *error;
     enf_tet_mesh tets; ///< until the arrangement takes them
     enf_arrangement arrangement;
-    int32_t *node_of; ///< fine cell to node of the graph
     const char *stage;
     double begun, share; ///< the part of the stage that is at work: where it begins and how much it is of all
     enf_crew crew;
@@ -145,18 +144,16 @@ static enf_status decimate(kitchen *k) {
     const enf_complex *complex = &build->complex;
     size_t cells = (size_t)complex->cell_count;
     bool *cell_kept = enf_array_new(cells, sizeof *cell_kept);
-    k->node_of = enf_array_new(cells, sizeof *k->node_of);
-    build->cell_of = enf_array_new(cells, sizeof *build->cell_of);
+    int32_t *node_of = build->cell_of = enf_array_new(cells, sizeof *node_of); // nodes, until they are cells
     int32_t nodes = 0, joined = 0;
-    bool good = cell_kept && k->node_of && build->cell_of;
+    bool good = cell_kept && node_of;
     for (size_t c = 0; good && c < cells; c++)
         cell_kept[c] = build->regions.kept[build->regions.cell_region[c]];
-    good =
-        good && enf_complex_number_nodes(complex, cell_kept, crack_width(build), k->node_of, &nodes, &joined);
+    good = good && enf_complex_number_nodes(complex, cell_kept, crack_width(build), node_of, &nodes, &joined);
     free(cell_kept);
     if (!good) return enf_fail_memory(k->error, "the cells");
     enf_graph graph;
-    enf_status status = enf_graph_build(&graph, complex, k->node_of, nodes, k->error);
+    enf_status status = enf_graph_build(&graph, complex, node_of, nodes, k->error);
     if (status != ENF_OK) return status;
     build->portals_initial = 0;
     for (int32_t p = 0; p < graph.piece_count; p++) build->portals_initial += graph.piece_open[p];
@@ -166,7 +163,7 @@ static enf_status decimate(kitchen *k) {
     if (status != ENF_OK) return status;
     build->cell_count = build->decimation.cell_count;
     for (int32_t c = 0; c < complex->cell_count; c++) {
-        build->cell_of[c] = k->node_of[c] < 0 ? -1 : build->decimation.cell_of[k->node_of[c]];
+        build->cell_of[c] = node_of[c] < 0 ? -1 : build->decimation.cell_of[node_of[c]];
     }
     say(k,
         "%d cells of %d (%d hairline cells joined to others first); %zu weights computed for %zu collapses",
@@ -235,7 +232,6 @@ enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf
     if (status == ENF_OK) skip_stage(&k, "visibility", "no PVS asked for");
     enf_tet_mesh_free(&k.tets);
     enf_arrangement_free(&k.arrangement);
-    free(k.node_of);
     build->seconds = enf_timer_now() - start;
     build->peak_bytes = enf_memory_peak();
     return status;

@@ -208,6 +208,7 @@ static void fill_portals(enf_portal_heap *portals) {
         join_pieces(portals, &portals->portals[number], &added, 1);
     }
     portals->portal_count = number + 1;
+    enf_surface_forget_cells(&portals->surface);
 }
 
 static int32_t count_portals(const enf_surface *surface) {

@@ -49,7 +49,13 @@ static const double *corner_of(const enf_graph *graph, const sorted_piece *sorte
     int64_t count = end - begin,
             at = sorted->turned ? sorted->start - (int64_t)i : sorted->start + (int64_t)i;
     if (at < 0) at += count;
-    return graph->corners[begin + (at < count ? at : at - count)];
+    return graph->vertices[graph->corners[begin + (at < count ? at : at - count)]];
+}
+
+/// The same in graph units.
+static void take_corner(const enf_graph *graph, const sorted_piece *sorted, int32_t i, double corner[3]) {
+    const double *at = corner_of(graph, sorted, i);
+    for (int k = 0; k < 3; ++k) corner[k] = at[k] * graph->scale;
 }
 
 static int32_t corner_count_of(const enf_graph *graph, int32_t piece) {
@@ -125,7 +131,8 @@ static void fill_list(const sorted_pieces *sorted, int32_t piece, int32_t *place
     *added = (sorted_piece){
         .beyond = (uint32_t)graph->piece_cell[piece][!turned], .piece = piece, .turned = turned};
     for (int64_t i = begin + 1; i < end; ++i)
-        if (compare_points(graph->corners[i], graph->corners[begin + added->start]) < 0)
+        if (compare_points(graph->vertices[graph->corners[i]],
+                           graph->vertices[graph->corners[begin + added->start]]) < 0)
             added->start = (int32_t)(i - begin);
 }
 
@@ -208,8 +215,11 @@ static bool grow_table(const enf_surface *surface, vertex_table *table) {
 }
 
 /// Finds or adds a vertex. Negative without memory.
-static int32_t vertex_at(enf_surface *surface, vertex_table *table, const double corner[3]) {
-    double point[3] = {corner[0] + 0.0, corner[1] + 0.0, corner[2] + 0.0}; // -0 becomes 0
+static int32_t vertex_at(enf_surface *surface, vertex_table *table, const enf_graph *graph,
+                         const sorted_piece *sorted, int32_t corner) {
+    double point[3];
+    take_corner(graph, sorted, corner, point);
+    for (int k = 0; k < 3; ++k) point[k] += 0.0; // -0 becomes 0
     if (2 * (size_t)surface->vertex_count >= table->mask && !grow_table(surface, table)) return -1;
     size_t slot = slot_of(surface, table, point);
     if (table->slots[slot] >= 0) return table->slots[slot];
@@ -236,14 +246,15 @@ static int32_t edge_at(enf_surface *surface, enf_pair_table *table, int32_t from
 
 /// Area vector of the outline, from the cross products with its first corner.
 static void measure_piece(const enf_graph *graph, const sorted_piece *sorted, double area[3]) {
-    double sum[3] = {0, 0, 0};
-    const double *origin = corner_of(graph, sorted, 0);
+    double sum[3] = {0, 0, 0}, origin[3];
+    take_corner(graph, sorted, 0, origin);
     for (int32_t i = 1; i + 1 < corner_count_of(graph, sorted->piece); ++i) {
-        const double *p = corner_of(graph, sorted, i), *q = corner_of(graph, sorted, i + 1);
         double a[3], b[3];
+        take_corner(graph, sorted, i, a);
+        take_corner(graph, sorted, i + 1, b);
         for (int k = 0; k < 3; ++k) {
-            a[k] = p[k] - origin[k];
-            b[k] = q[k] - origin[k];
+            a[k] -= origin[k];
+            b[k] -= origin[k];
         }
         for (int k = 0; k < 3; ++k)
             sum[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
@@ -253,6 +264,13 @@ static void measure_piece(const enf_graph *graph, const sorted_piece *sorted, do
 
 static double length_of(const double v[3]) {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+void enf_surface_forget_cells(enf_surface *surface) {
+    free(surface->piece_cell);
+    free(surface->piece_open);
+    surface->piece_cell = NULL;
+    surface->piece_open = NULL;
 }
 
 double enf_surface_piece_area(const enf_surface *surface, int32_t piece) {
@@ -271,9 +289,9 @@ static bool is_gone(const enf_surface_piece *piece) {
 static bool add_outline(enf_surface *surface, const enf_graph *graph, const sorted_piece *from,
                         vertex_table *vertices, enf_pair_table *edges, int32_t *at) {
     int32_t count = corner_count_of(graph, from->piece);
-    int32_t first = vertex_at(surface, vertices, corner_of(graph, from, 0)), last = first;
+    int32_t first = vertex_at(surface, vertices, graph, from, 0), last = first;
     for (int32_t i = 1; i <= count; ++i) {
-        int32_t next = i < count ? vertex_at(surface, vertices, corner_of(graph, from, i)) : first;
+        int32_t next = i < count ? vertex_at(surface, vertices, graph, from, i) : first;
         if (last < 0 || next < 0) return false;
         if (next == last) continue;
         int32_t edge = edge_at(surface, edges, last, next);

@@ -32,8 +32,8 @@ typedef struct enf_body {
 typedef struct enf_surface {
     int32_t piece_count;
     int32_t (*piece_cell)[2]; ///< fine cells; the smaller number first, -1 last
-    bool *piece_open;
-    int32_t *piece_edge;  ///< piece_count + 1 offsets into piece_edges
+    bool *piece_open;         ///< these two until enf_surface_forget_cells
+    int32_t *piece_edge;      ///< piece_count + 1 offsets into piece_edges
     int32_t *piece_edges; ///< 2 * edge, + 1 when the outline (counter-clockwise seen from cell 1's side) runs
                           ///< it backwards
     enf_surface_piece *pieces;
@@ -63,6 +63,9 @@ typedef struct enf_surface {
 /// Copies what it needs of the graph. ENF_BAD_INPUT for cell numbers or offsets out of range.
 enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_error *error);
 void enf_surface_free(enf_surface *surface);
+
+/// Frees what tells which piece belongs to which fine cells: nothing below asks for it.
+void enf_surface_forget_cells(enf_surface *surface);
 
 /// The true area of a piece that is not gone.
 double enf_surface_piece_area(const enf_surface *surface, int32_t piece);
