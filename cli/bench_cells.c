@@ -4,6 +4,7 @@
 // taken when the first run has ended, before the yardstick has allocated anything; it holds the libraries,
 // the soup and the reading of it.
 #include "base/array.h"
+#include "base/memory.h"
 #include "base/timer.h"
 #include "build/build.h"
 #include "cli/bench.h"
@@ -90,7 +91,7 @@ static enf_status run_once(enf_soup *soup, int run, clocks *clocks, row *row, en
     clocks->total[run] = enf_timer_cpu() - started;
     for (int i = 0; i < STAGES && !status; i++) clocks->stage[i][run] = build.stages[i].cpu_seconds;
     if (run == 0) {
-        row->column[PEAK] = (double)cli_peak_bytes() / 1e6;
+        row->column[PEAK] = (double)enf_memory_peak() / 1e6;
         row->column[TETRAHEDRA] = build.complex.tetrahedron_count;
         row->column[FINE_CELLS] = build.complex.cell_count;
         row->column[CELL_RATIO] = row->column[FINE_CELLS] / row->column[TETRAHEDRA];

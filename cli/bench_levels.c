@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
 #include "base/timer.h"
 #include "build/check.h"
 #include "build/write.h"
@@ -77,7 +78,7 @@ static int compile_level(void *user, const char *path, const char *name, void *r
     double started = enf_timer_now();
     if (!status) status = enf_build_write(&job.build, job.options_json, "/dev/null", &error);
     job.seconds += enf_timer_now() - started;
-    double peak = (double)cli_peak_bytes();
+    double peak = (double)enf_memory_peak();
     if (!status && request->check) status = check_build(&job, &verdict, &error);
     if (!status) print_row(name, &job, peak, &verdict);
     cli_job_free(&job);

@@ -87,10 +87,10 @@ static enf_status write_world(cli_job *job, const char *path, enf_error *error) 
     struct stat about;
     if (!status && stat(path, &about) == 0 && S_ISREG(about.st_mode))
         job->file_size = (uint64_t)about.st_size;
-    job->write_seconds = enf_timer_now() - started;
-    job->write_cpu_seconds = enf_timer_cpu() - cpu_started;
-    job->seconds += job->write_seconds;
-    job->peak_bytes = cli_peak_bytes();
+    job->write.name = "write";
+    cli_stage_end(&job->write, started, cpu_started);
+    job->seconds += job->write.seconds;
+    job->peak_bytes = job->write.peak_bytes;
     return status;
 }
 

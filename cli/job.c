@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/job.h"
 
+#include "base/memory.h"
 #include "base/timer.h"
 #include "build/json.h"
 #include "shim/shim.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 const char *const cli_tetrahedralizers[] = {"cgal", "tetgen", NULL};
@@ -131,10 +131,10 @@ static void name_inputs(const enf_soup *soup, enf_error *error) {
 
 enf_status cli_job_run(cli_job *job, const cli_texts *inputs, cli_progress *progress, enf_error *error) {
     double started = enf_timer_now(), cpu_started = enf_timer_cpu();
+    job->read.name = "read";
     if (progress) cli_progress_report(progress, "read", 0);
     enf_status status = read_inputs(job, inputs, error);
-    job->read_seconds = enf_timer_now() - started;
-    job->read_cpu_seconds = enf_timer_cpu() - cpu_started;
+    cli_stage_end(&job->read, started, cpu_started);
     job->options.progress = progress ? cli_progress_report : NULL;
     job->options.progress_user = progress;
     if (!status) {
@@ -142,20 +142,22 @@ enf_status cli_job_run(cli_job *job, const cli_texts *inputs, cli_progress *prog
         if (status == ENF_BAD_INPUT) name_inputs(&job->build.soup, error);
     }
     job->seconds = enf_timer_now() - started;
-    job->peak_bytes = cli_peak_bytes();
+    job->peak_bytes = enf_memory_peak();
     return status;
+}
+
+void cli_stage_end(enf_stage_report *stage, double started, double cpu_started) {
+    stage->seconds = enf_timer_now() - started;
+    stage->cpu_seconds = enf_timer_cpu() - cpu_started;
+    stage->peak_bytes = enf_memory_peak();
+    stage->resident_bytes = enf_memory_resident();
+    stage->ran = true;
 }
 
 void cli_job_free(cli_job *job) {
     free(job->options_json);
     enf_build_free(&job->build);
     *job = (cli_job){0};
-}
-
-uint64_t cli_peak_bytes(void) {
-    struct rusage usage;
-    if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
-    return (uint64_t)usage.ru_maxrss * 1024; // Linux counts kilobytes
 }
 
 cli_counts cli_job_count(const cli_job *job) {

@@ -72,8 +72,8 @@ typedef struct cli_job {
     enf_build_options options;
     char *options_json; ///< what shapes the result, on one line
     enf_build build;
-    double read_seconds, write_seconds, seconds;
-    double read_cpu_seconds, write_cpu_seconds;
+    enf_stage_report read, write;
+    double seconds;
     uint64_t peak_bytes, file_size;
 } cli_job;
 
@@ -85,8 +85,8 @@ enf_status cli_job_run(cli_job *job, const cli_texts *inputs, cli_progress *prog
 
 void cli_job_free(cli_job *job);
 
-/// The most memory that the process has had so far.
-uint64_t cli_peak_bytes(void);
+/// Notes the time and memory of a stage outside of the recipe: reading or writing.
+void cli_stage_end(enf_stage_report *stage, double started, double cpu_started);
 
 /// Kept fine cells, portals and so on, counted from a finished build.
 typedef struct cli_counts {

@@ -91,27 +91,25 @@ static void put_regions(enf_json *json, const enf_build *build, const cli_counts
     enf_json_whole(json, "regions_ambiguous", ambiguous);
 }
 
-static void put_stage(enf_json *json, const char *name, double seconds, double cpu_seconds, bool ran,
-                      const char *why) {
+static void put_stage(enf_json *json, const enf_stage_report *stage) {
     enf_json_begin_object(json, NULL);
     json->one_line = true;
-    enf_json_text(json, "name", name);
-    enf_json_number(json, "seconds", seconds);
-    enf_json_number(json, "cpu_seconds", cpu_seconds);
-    enf_json_bool(json, "ran", ran);
-    enf_json_text(json, "why", why);
+    enf_json_text(json, "name", stage->name);
+    enf_json_number(json, "seconds", stage->seconds);
+    enf_json_number(json, "cpu_seconds", stage->cpu_seconds);
+    enf_json_whole(json, "peak_bytes", (int64_t)stage->peak_bytes);
+    enf_json_whole(json, "resident_bytes", (int64_t)stage->resident_bytes);
+    enf_json_bool(json, "ran", stage->ran);
+    enf_json_text(json, "why", stage->why);
     enf_json_end_object(json);
     json->one_line = false;
 }
 
 static void put_stages(enf_json *json, const cli_job *job) {
     enf_json_begin_array(json, "stages");
-    put_stage(json, "read", job->read_seconds, job->read_cpu_seconds, true, "");
-    for (int i = 0; i < job->build.stage_count; i++) {
-        const enf_stage_report *stage = &job->build.stages[i];
-        put_stage(json, stage->name, stage->seconds, stage->cpu_seconds, stage->ran, stage->why);
-    }
-    put_stage(json, "write", job->write_seconds, job->write_cpu_seconds, true, "");
+    put_stage(json, &job->read);
+    for (int i = 0; i < job->build.stage_count; i++) put_stage(json, &job->build.stages[i]);
+    put_stage(json, &job->write);
     enf_json_end_array(json);
 }
 
@@ -195,8 +193,9 @@ void cli_report_summary(const cli_job *job, const char *output, FILE *out) {
             build->complex.cell_count, counts.fine_active, job->seconds, (double)job->peak_bytes / 1e6);
 }
 
-static void print_stage(FILE *out, const char *name, double seconds, const char *what) {
-    fprintf(out, "%-14s %8.3f s  %s\n", name, seconds, what);
+static void print_stage(FILE *out, const enf_stage_report *stage) {
+    fprintf(out, "%-14s %8.3f s %7.0f MB  %s%s\n", stage->name, stage->seconds,
+            (double)stage->resident_bytes / 1e6, stage->ran ? "" : "skipped: ", stage->why);
 }
 
 static void print_more(const cli_job *job, const cli_counts *counts, FILE *out) {
@@ -224,13 +223,8 @@ void cli_report_verbose(const cli_job *job, FILE *out) {
     for (size_t i = 0; i < soup->rejected_count; i++)
         fprintf(out, "%s:%" PRId64 ": left out: %s\n", file_of(soup, soup->rejected[i].file),
                 soup->rejected[i].line, enf_reject_name(soup->rejected[i].reason));
-    print_stage(out, "read", job->read_seconds, "");
-    for (int i = 0; i < build->stage_count; i++) {
-        const enf_stage_report *stage = &build->stages[i];
-        char what[200];
-        snprintf(what, sizeof what, "%s%s", stage->ran ? "" : "skipped: ", stage->why);
-        print_stage(out, stage->name, stage->seconds, what);
-    }
-    print_stage(out, "write", job->write_seconds, "");
+    print_stage(out, &job->read);
+    for (int i = 0; i < build->stage_count; i++) print_stage(out, &build->stages[i]);
+    print_stage(out, &job->write);
     print_more(job, &counts, out);
 }

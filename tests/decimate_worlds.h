@@ -215,10 +215,27 @@ static inline world cut_world(int cells, uint64_t *seed) {
     return w;
 }
 
-static inline enf_graph graph_of(const world *w) {
+typedef double vertex[3];
+
+/// The corners of all pieces, one after the other. Free them when the graph is not needed any more.
+static inline vertex *vertices_of(const world *w) {
+    size_t corners = 0, at = 0;
+    for (int i = 0; i < w->count; ++i) corners += (size_t)w->pieces[i].count;
+    vertex *vertices = malloc(corners * sizeof *vertices + 1);
+    assert_non_null(vertices);
+    for (int i = 0; i < w->count; ++i) {
+        const flat *piece = &w->pieces[i];
+        memcpy(vertices[at], piece->corners, (size_t)piece->count * sizeof piece->corners[0]);
+        at += (size_t)piece->count;
+    }
+    return vertices;
+}
+
+static inline enf_graph graph_of(const world *w, const vertex *vertices) {
     size_t count = (size_t)w->count, corners = 0;
     for (int i = 0; i < w->count; ++i) corners += (size_t)w->pieces[i].count;
-    enf_graph graph = {.cell_count = w->cell_count, .piece_count = w->count};
+    enf_graph graph = {
+        .cell_count = w->cell_count, .piece_count = w->count, .vertices = vertices, .scale = 1};
     graph.piece_cell = malloc(count * sizeof *graph.piece_cell + 1);
     graph.piece_open = malloc(count * sizeof *graph.piece_open + 1);
     graph.piece_corner = malloc((count + 1) * sizeof *graph.piece_corner);
@@ -230,18 +247,10 @@ static inline enf_graph graph_of(const world *w) {
         memcpy(graph.piece_cell[i], piece->cell, sizeof piece->cell);
         graph.piece_open[i] = piece->open;
         graph.piece_corner[i] = at;
-        memcpy(graph.corners[at], piece->corners, (size_t)piece->count * sizeof piece->corners[0]);
-        at += piece->count;
+        for (int k = 0; k < piece->count; ++k, ++at) graph.corners[at] = (int32_t)at;
     }
     graph.piece_corner[count] = at;
     return graph;
-}
-
-static inline void graph_free(enf_graph *graph) {
-    free(graph->piece_cell);
-    free(graph->piece_open);
-    free(graph->piece_corner);
-    free(graph->corners);
 }
 
 /// Another order of the pieces, other first corners, some pieces seen from the other side.

@@ -190,12 +190,14 @@ static size_t slow_decimate(const world *w, enf_heuristic heuristic, enf_collaps
 // ---- Tests ----
 
 static enf_decimation decimate(const world *w, enf_heuristic heuristic, enf_stop stop, double unit) {
-    enf_graph graph = graph_of(w);
+    vertex *vertices = vertices_of(w);
+    enf_graph graph = graph_of(w, (const vertex *)vertices);
     enf_decimation out;
     enf_error error;
     enf_status status = enf_graph_decimate(&graph, heuristic, &stop, unit, NULL, NULL, &out, &error);
     if (status != ENF_OK) fail_msg("%s", error.text);
-    graph_free(&graph);
+    assert_null(graph.corners); // taken
+    free(vertices);
     return out;
 }
 
@@ -419,7 +421,8 @@ static void cancelling_leaves_nothing_behind(void **state) {
     assert_non_null(cells);
     for (int i = 0; i < 1600; ++i) cells[i] = i;
     world w = lattice_world(size, cells, 0x1p-6, 0, &seed);
-    enf_graph graph = graph_of(&w);
+    vertex *vertices = vertices_of(&w);
+    enf_graph graph = graph_of(&w, (const vertex *)vertices);
     enf_decimation out;
     enf_error error;
     int calls = 0;
@@ -428,7 +431,8 @@ static void cancelling_leaves_nothing_behind(void **state) {
         ENF_NO_RESOURCES);
     assert_int_equal(calls, 1);
     assert_non_null(strstr(error.text, "cancelled"));
-    graph_free(&graph);
+    assert_null(graph.corners); // taken
+    free(vertices);
     free(w.pieces);
     free(cells);
 }
@@ -438,26 +442,26 @@ static void strange_graphs_are_refused_or_done(void **state) {
     enf_stop stop = {.rule = ENF_STOP_AUTO};
     enf_decimation out;
     enf_error error;
-    int64_t offsets[2] = {0, 3};
-    enf_graph graph = {.piece_corner = offsets};
+    enf_graph graph = {0};
     assert_int_equal(enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &stop, 1, NULL, NULL, &out, &error),
                      ENF_OK);
     assert_int_equal(out.cell_count, 0);
     enf_decimation_free(&out);
-    // Two cells and one piece of no area, then of corners that are no numbers.
-    int32_t cells[1][2] = {{1, 0}};
-    bool open = true;
-    double corners[3][3] = {{0}};
-    graph = (enf_graph){2, 1, cells, &open, offsets, corners};
-    for (int round = 0; round < 2; ++round) {
+    // Two cells and one piece of no area, then of corners that are no numbers, then with a cell too many.
+    for (int round = 0; round < 3; ++round) {
+        world w = world_new();
+        w.cell_count = 2;
+        add_piece(&w, &(flat){.cell = {1, 0}, .open = true, .count = 3});
+        vertex *vertices = vertices_of(&w);
+        for (int i = 0; round > 0 && i < 9; ++i) vertices[i / 3][i % 3] = i % 2 ? NAN : INFINITY;
+        graph = graph_of(&w, (const vertex *)vertices);
+        if (round == 2) graph.piece_cell[0][0] = 2;
         assert_int_equal(enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &stop, 1, NULL, NULL, &out, &error),
-                         ENF_OK);
-        enf_decimation_free(&out);
-        for (int i = 0; i < 9; ++i) corners[i / 3][i % 3] = i % 2 ? NAN : INFINITY;
+                         round == 2 ? ENF_BAD_INPUT : ENF_OK);
+        if (round < 2) enf_decimation_free(&out);
+        free(vertices);
+        free(w.pieces);
     }
-    cells[0][0] = 2;
-    assert_int_equal(enf_graph_decimate(&graph, ENF_HEURISTIC_ASPECT, &stop, 1, NULL, NULL, &out, &error),
-                     ENF_BAD_INPUT);
 }
 
 int main(void) {

@@ -4,6 +4,7 @@
 #include "build/build.h"
 
 #include "base/array.h"
+#include "base/memory.h"
 #include "base/timer.h"
 #include "build/arrangement.h"
 #include "build/connect.h"
@@ -17,7 +18,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 /// What lives only while the recipe runs.
 typedef struct kitchen {
@@ -26,7 +26,6 @@ typedef struct kitchen {
     enf_error *error;
     enf_tet_mesh tets; ///< until the arrangement takes them
     enf_arrangement arrangement;
-    int32_t *node_of; ///< fine cell to node of the graph
     const char *stage;
     double begun, share; ///< the part of the stage that is at work: where it begins and how much it is of all
     enf_crew crew;
@@ -145,29 +144,26 @@ static enf_status decimate(kitchen *k) {
     const enf_complex *complex = &build->complex;
     size_t cells = (size_t)complex->cell_count;
     bool *cell_kept = enf_array_new(cells, sizeof *cell_kept);
-    k->node_of = enf_array_new(cells, sizeof *k->node_of);
-    build->cell_of = enf_array_new(cells, sizeof *build->cell_of);
+    int32_t *node_of = build->cell_of = enf_array_new(cells, sizeof *node_of); // nodes, until they are cells
     int32_t nodes = 0, joined = 0;
-    bool good = cell_kept && k->node_of && build->cell_of;
+    bool good = cell_kept && node_of;
     for (size_t c = 0; good && c < cells; c++)
         cell_kept[c] = build->regions.kept[build->regions.cell_region[c]];
-    good =
-        good && enf_complex_number_nodes(complex, cell_kept, crack_width(build), k->node_of, &nodes, &joined);
+    good = good && enf_complex_number_nodes(complex, cell_kept, crack_width(build), node_of, &nodes, &joined);
     free(cell_kept);
     if (!good) return enf_fail_memory(k->error, "the cells");
     enf_graph graph;
-    enf_status status = enf_graph_build(&graph, complex, k->node_of, nodes, k->error);
+    enf_status status = enf_graph_build(&graph, complex, node_of, nodes, k->error);
     if (status != ENF_OK) return status;
     build->portals_initial = 0;
     for (int32_t p = 0; p < graph.piece_count; p++) build->portals_initial += graph.piece_open[p];
     double unit = build->mesh.frame.step * 0x1p53;
     status = enf_graph_decimate(&graph, k->options->heuristic, &k->options->stop, unit, tell, k,
                                 &build->decimation, k->error);
-    enf_graph_free(&graph);
     if (status != ENF_OK) return status;
     build->cell_count = build->decimation.cell_count;
     for (int32_t c = 0; c < complex->cell_count; c++) {
-        build->cell_of[c] = k->node_of[c] < 0 ? -1 : build->decimation.cell_of[k->node_of[c]];
+        build->cell_of[c] = node_of[c] < 0 ? -1 : build->decimation.cell_of[node_of[c]];
     }
     say(k,
         "%d cells of %d (%d hairline cells joined to others first); %zu weights computed for %zu collapses",
@@ -198,6 +194,8 @@ static enf_status run_stage(kitchen *k, const char *name, enf_status (*stage)(ki
     enf_status status = stage(k);
     report->seconds = enf_timer_now() - start;
     report->cpu_seconds = enf_timer_cpu() - cpu_start;
+    report->peak_bytes = enf_memory_peak();
+    report->resident_bytes = enf_memory_resident();
     return status;
 }
 
@@ -234,10 +232,7 @@ enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf
     if (status == ENF_OK) skip_stage(&k, "visibility", "no PVS asked for");
     enf_tet_mesh_free(&k.tets);
     enf_arrangement_free(&k.arrangement);
-    free(k.node_of);
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
     build->seconds = enf_timer_now() - start;
-    build->peak_bytes = (uint64_t)usage.ru_maxrss * 1024;
+    build->peak_bytes = enf_memory_peak();
     return status;
 }

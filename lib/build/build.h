@@ -42,6 +42,8 @@ typedef struct enf_build_options {
 typedef struct enf_stage_report {
     const char *name;
     double seconds, cpu_seconds; ///< by the clock; of the processor, all threads together
+    uint64_t peak_bytes;         ///< the most memory that the process had until the end of the stage
+    uint64_t resident_bytes;     ///< what it had then
     bool ran;
     char why[160]; ///< why it was skipped, or what it skipped
 } enf_stage_report;

@@ -109,7 +109,7 @@ static size_t choose_cut(const enf_collapse *collapses, size_t count, enf_heuris
 
 typedef struct task {
     enf_portal_heap portals;
-    const enf_graph *graph;
+    int32_t cell_count; ///< of the graph
     const enf_stop *stop;
     double scale; ///< weights in graph units times this are those in world units
     bool (*progress)(void *user, double fraction);
@@ -117,7 +117,7 @@ typedef struct task {
 } task;
 
 static enf_status collapse_all(task *task, enf_decimation *out, enf_error *error) {
-    int64_t cells = task->graph->cell_count;
+    int64_t cells = task->cell_count;
     for (;;) {
         int32_t portal;
         enf_status status = enf_portal_heap_top(&task->portals, &portal, &out->next_weight, error);
@@ -132,26 +132,28 @@ static enf_status collapse_all(task *task, enf_decimation *out, enf_error *error
             collapse->weight > jump_from)
             return ENF_OK;
         if (task->progress && out->collapse_count % PROGRESS_STEP == 0 &&
-            !task->progress(task->user, (double)out->collapse_count / (double)task->graph->cell_count))
+            !task->progress(task->user, (double)out->collapse_count / (double)task->cell_count))
             return enf_fail(error, ENF_NO_RESOURCES, "decimate: cancelled");
     }
 }
 
-enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop,
-                              double unit, bool (*progress)(void *user, double fraction), void *user,
-                              enf_decimation *out, enf_error *error) {
+enf_status enf_graph_decimate(enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop, double unit,
+                              bool (*progress)(void *user, double fraction), void *user, enf_decimation *out,
+                              enf_error *error) {
     *out = (enf_decimation){0};
-    if ((int)heuristic < 0 || heuristic >= ENF_HEURISTIC_COUNT || !(unit > 0))
+    if ((int)heuristic < 0 || heuristic >= ENF_HEURISTIC_COUNT || !(unit > 0)) {
+        enf_graph_free(graph);
         return enf_fail(error, ENF_BAD_USAGE, "decimate: heuristic %d, unit %g", (int)heuristic, unit);
-    task task = {.graph = graph,
+    }
+    task task = {.cell_count = graph->cell_count,
                  .stop = stop,
                  .scale = heuristic == ENF_HEURISTIC_ASPECT_SCALED ? 1 / unit : 1,
                  .progress = progress,
                  .user = user};
     enf_status status = enf_portal_heap_create(&task.portals, graph, heuristic, error);
     if (status != ENF_OK) return status;
-    out->cell_of = enf_array_new((size_t)graph->cell_count, sizeof *out->cell_of);
-    out->collapses = enf_array_new((size_t)graph->cell_count, sizeof *out->collapses);
+    out->cell_of = enf_array_new((size_t)task.cell_count, sizeof *out->cell_of);
+    out->collapses = enf_array_new((size_t)task.cell_count, sizeof *out->collapses);
     if (out->cell_of && out->collapses)
         status = collapse_all(&task, out, error);
     else
@@ -164,7 +166,7 @@ enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, c
     out->evaluations = task.portals.evaluations;
     enf_portal_heap_free(&task.portals);
     if (status == ENF_OK)
-        number_cells(out, graph->cell_count);
+        number_cells(out, task.cell_count);
     else
         enf_decimation_free(out);
     return status;

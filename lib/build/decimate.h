@@ -43,11 +43,12 @@ typedef struct enf_decimation {
 
 void enf_decimation_free(enf_decimation *decimation);
 
-/// `unit`: world units per graph unit. aspect-scaled is not scale free, so weights are always computed and
-/// compared in world units. `progress` may be null; called now and then with 0..1; returning false cancels
-/// (ENF_NO_RESOURCES, "cancelled").
-enf_status enf_graph_decimate(const enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop,
-                              double unit, bool (*progress)(void *user, double fraction), void *user,
-                              enf_decimation *out, enf_error *error);
+/// Takes the graph: it is empty afterwards, whatever the outcome, so that its memory is free while cells
+/// merge. `unit`: world units per graph unit. aspect-scaled is not scale free, so weights are always computed
+/// and compared in world units. `progress` may be null; called now and then with 0..1; returning false
+/// cancels (ENF_NO_RESOURCES, "cancelled").
+enf_status enf_graph_decimate(enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop, double unit,
+                              bool (*progress)(void *user, double fraction), void *user, enf_decimation *out,
+                              enf_error *error);
 
 #endif

@@ -26,6 +26,8 @@ static bool allocate(enf_graph *graph, size_t pieces, size_t corners) {
 enf_status enf_graph_build(enf_graph *graph, const enf_complex *complex, const int32_t *node_of,
                            int32_t node_count, enf_error *error) {
     memset(graph, 0, sizeof *graph);
+    graph->vertices = (const double(*)[3])complex->vertex_position;
+    graph->scale = 0x1p-53;
     bool good = true;
     for (int pass = 0; good && pass < 2; pass++) { // count, then fill
         int32_t count = 0;
@@ -41,11 +43,7 @@ enf_status enf_graph_build(enf_graph *graph, const enf_complex *complex, const i
                 graph->piece_open[count] =
                     complex->piece_cover[p] == ENF_PIECE_OPEN && node[0] >= 0 && node[1] >= 0;
                 graph->piece_corner[count] = corners;
-                for (int32_t c = 0; c < corner_count; c++) {
-                    const double *at = complex->vertex_position[corner[c].vertex];
-                    double *to = graph->corners[corners + c];
-                    for (int k = 0; k < 3; k++) to[k] = at[k] * 0x1p-53;
-                }
+                for (int32_t c = 0; c < corner_count; c++) graph->corners[corners + c] = corner[c].vertex;
             }
             corners += corner_count;
             count++;

@@ -6,7 +6,7 @@
 #include "build/complex.h"
 
 /// Plain arrays, doubles: decimation steers by areas, nothing topological is decided from these coordinates.
-/// Coordinates are grid coordinates divided by 2^53, so within [-1, 1].
+/// Graph units are grid steps times 2^53, so coordinates are within [-1, 1].
 typedef struct enf_graph {
     int32_t cell_count;
 
@@ -15,8 +15,10 @@ typedef struct enf_graph {
         *piece_cell)[2]; ///< the cell behind the piece (its normal points away from it) and the cell in front
                          ///< of it; -1 on either side: nothing kept there (wall, hull or discarded region)
     bool *piece_open;    ///< true: one can pass (a graph edge, both cells >= 0); false: occluded or boundary
-    int64_t *piece_corner; ///< piece_count + 1 offsets into corners
-    double (*corners)[3];  ///< convex polygons, counter-clockwise seen from the front
+    int64_t *piece_corner;       ///< piece_count + 1 offsets into corners
+    int32_t *corners;            ///< vertices: convex polygons, counter-clockwise seen from the front
+    const double (*vertices)[3]; ///< borrowed from the complex; equal ones may have several numbers
+    double scale;                ///< coordinates times this are in graph units; a power of two
 } enf_graph;
 
 void enf_graph_free(enf_graph *graph);

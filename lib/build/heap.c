@@ -10,10 +10,9 @@
 bool enf_heap_create(enf_heap *heap, int32_t capacity) {
     assert(capacity >= 0);
     *heap = (enf_heap){.capacity = capacity};
-    heap->items = enf_array_new((size_t)capacity, sizeof *heap->items);
+    heap->entries = enf_array_new((size_t)capacity, sizeof *heap->entries);
     heap->places = enf_array_new((size_t)capacity, sizeof *heap->places);
-    heap->keys = enf_array_new((size_t)capacity, sizeof *heap->keys);
-    if (!heap->items || !heap->places || !heap->keys) {
+    if (!heap->entries || !heap->places) {
         enf_heap_free(heap);
         return false;
     }
@@ -22,9 +21,8 @@ bool enf_heap_create(enf_heap *heap, int32_t capacity) {
 }
 
 void enf_heap_free(enf_heap *heap) {
-    free(heap->items);
+    free(heap->entries);
     free(heap->places);
-    free(heap->keys);
     *heap = (enf_heap){0};
 }
 
@@ -32,8 +30,13 @@ bool enf_heap_has(const enf_heap *heap, int32_t item) {
     return heap->places[item] >= 0;
 }
 
+enf_heap_key enf_heap_key_of(const enf_heap *heap, int32_t item) {
+    assert(heap->places[item] >= 0);
+    return heap->entries[heap->places[item]].key;
+}
+
 int32_t enf_heap_top(const enf_heap *heap) {
-    return heap->count > 0 ? heap->items[0] : -1;
+    return heap->count > 0 ? heap->entries[0].item : -1;
 }
 
 bool enf_heap_key_less(enf_heap_key a, enf_heap_key b) {
@@ -42,60 +45,57 @@ bool enf_heap_key_less(enf_heap_key a, enf_heap_key b) {
     return a.second < b.second;
 }
 
-static void put(enf_heap *heap, int32_t place, int32_t item) {
-    heap->items[place] = item;
-    heap->places[item] = place;
+static void put(enf_heap *heap, int32_t place, struct enf_heap_entry entry) {
+    heap->entries[place] = entry;
+    heap->places[entry.item] = place;
 }
 
-static void rise(enf_heap *heap, int32_t place, int32_t item) {
+static void rise(enf_heap *heap, int32_t place, struct enf_heap_entry entry) {
     while (place > 0) {
         int32_t parent = (place - 1) / 2;
-        if (!enf_heap_key_less(heap->keys[item], heap->keys[heap->items[parent]])) break;
-        put(heap, place, heap->items[parent]);
+        if (!enf_heap_key_less(entry.key, heap->entries[parent].key)) break;
+        put(heap, place, heap->entries[parent]);
         place = parent;
     }
-    put(heap, place, item);
+    put(heap, place, entry);
 }
 
-static void sink(enf_heap *heap, int32_t place, int32_t item) {
+static void sink(enf_heap *heap, int32_t place, struct enf_heap_entry entry) {
     for (;;) {
         int64_t child = 2 * (int64_t)place + 1;
         if (child >= heap->count) break;
         if (child + 1 < heap->count &&
-            enf_heap_key_less(heap->keys[heap->items[child + 1]], heap->keys[heap->items[child]]))
+            enf_heap_key_less(heap->entries[child + 1].key, heap->entries[child].key))
             ++child;
-        if (!enf_heap_key_less(heap->keys[heap->items[child]], heap->keys[item])) break;
-        put(heap, place, heap->items[child]);
+        if (!enf_heap_key_less(heap->entries[child].key, entry.key)) break;
+        put(heap, place, heap->entries[child]);
         place = (int32_t)child;
     }
-    put(heap, place, item);
+    put(heap, place, entry);
 }
 
 void enf_heap_set(enf_heap *heap, int32_t item, enf_heap_key key) {
     assert(item >= 0 && item < heap->capacity);
     assert(key.weight == key.weight);
+    const struct enf_heap_entry entry = {key, item};
     int32_t place = heap->places[item];
-    if (place < 0) {
-        heap->keys[item] = key;
-        rise(heap, heap->count++, item);
-        return;
-    }
-    bool lighter = enf_heap_key_less(key, heap->keys[item]);
-    heap->keys[item] = key;
-    if (lighter)
-        rise(heap, place, item);
+    if (place < 0)
+        rise(heap, heap->count++, entry);
+    else if (enf_heap_key_less(key, heap->entries[place].key))
+        rise(heap, place, entry);
     else
-        sink(heap, place, item);
+        sink(heap, place, entry);
 }
 
 void enf_heap_remove(enf_heap *heap, int32_t item) {
     assert(item >= 0 && item < heap->capacity);
     int32_t place = heap->places[item];
     if (place < 0) return;
-    int32_t last = heap->items[--heap->count];
+    enf_heap_key gone = heap->entries[place].key;
+    struct enf_heap_entry last = heap->entries[--heap->count];
     heap->places[item] = -1;
-    if (last == item) return;
-    if (enf_heap_key_less(heap->keys[last], heap->keys[item]))
+    if (last.item == item) return;
+    if (enf_heap_key_less(last.key, gone))
         rise(heap, place, last);
     else
         sink(heap, place, last);

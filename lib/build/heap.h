@@ -13,16 +13,21 @@ typedef struct enf_heap_key {
 } enf_heap_key;
 
 typedef struct enf_heap {
-    int32_t count;      ///< items in the heap
-    int32_t capacity;   ///< items are numbered 0..capacity-1
-    int32_t *items;     ///< the heap: the children of place i are at 2i+1 and 2i+2
-    int32_t *places;    ///< for each item its place, or -1 when it is not in the heap
-    enf_heap_key *keys; ///< for each item its key
+    int32_t count;    ///< items in the heap
+    int32_t capacity; ///< items are numbered 0..capacity-1
+    struct enf_heap_entry {
+        enf_heap_key key; ///< beside the item, so that comparing them touches nothing else
+        int32_t item;
+    } * entries;     ///< the heap: the children of place i are at 2i+1 and 2i+2
+    int32_t *places; ///< for each item its place, or -1 when it is not in the heap
 } enf_heap;
 
 /// An empty heap for items 0..capacity-1. Returns false when there is no memory.
 bool enf_heap_create(enf_heap *heap, int32_t capacity);
 void enf_heap_free(enf_heap *heap);
+
+/// The key of an item that is in the heap.
+enf_heap_key enf_heap_key_of(const enf_heap *heap, int32_t item);
 
 bool enf_heap_has(const enf_heap *heap, int32_t item);
 

@@ -9,7 +9,7 @@
 bool enf_pair_table_create(enf_pair_table *table, size_t capacity) {
     *table = (enf_pair_table){0};
     size_t slots = 16;
-    while (slots / 2 < capacity + 1 && slots < SIZE_MAX / 4) slots *= 2;
+    while (slots / 4 * 3 < capacity + 1 && slots < SIZE_MAX / 4) slots *= 2;
     table->mask = slots - 1;
     table->keys = enf_array_new(slots, sizeof *table->keys);
     table->values = enf_array_new(slots, sizeof *table->values);
@@ -44,6 +44,22 @@ int32_t *enf_pair_table_at(enf_pair_table *table, int32_t a, int32_t b) {
     while (table->values[slot] >= 0 && table->keys[slot] != key) slot = (slot + 1) & table->mask;
     table->keys[slot] = key;
     return &table->values[slot];
+}
+
+bool enf_pair_table_reserve(enf_pair_table *table, size_t capacity) {
+    if ((table->mask + 1) / 4 * 3 >= capacity + 1) return true;
+    enf_pair_table grown;
+    if (!enf_pair_table_create(&grown, 2 * capacity)) return false;
+    for (size_t i = 0; i <= table->mask; ++i) {
+        if (table->values[i] < 0) continue;
+        size_t slot = home_of(&grown, table->keys[i]);
+        while (grown.values[slot] >= 0) slot = (slot + 1) & grown.mask;
+        grown.keys[slot] = table->keys[i];
+        grown.values[slot] = table->values[i];
+    }
+    enf_pair_table_free(table);
+    *table = grown;
+    return true;
 }
 
 void enf_pair_table_remove(enf_pair_table *table, int32_t a, int32_t b) {

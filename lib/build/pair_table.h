@@ -14,6 +14,9 @@ typedef struct enf_pair_table {
 
 /// Room for `capacity` entries at any one time. Returns false when there is no memory.
 bool enf_pair_table_create(enf_pair_table *table, size_t capacity);
+
+/// Makes room for so many entries. False, with the table as it was, when there is no memory.
+bool enf_pair_table_reserve(enf_pair_table *table, size_t capacity);
 void enf_pair_table_free(enf_pair_table *table);
 
 /// Where the value of (a, b) = (b, a) is kept; it reads -1 when the pair is new. The caller stores a value >=

@@ -54,8 +54,8 @@ static void normal_of(const enf_portal_heap *portals, const enf_portal *portal, 
     const double *sum = portal->sum;
     double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
     if (!(length > portal->area * ENF_CLOSED_PORTAL_RATIO)) {
-        sum = portals->surface.sides[2 * (size_t)portal->largest_piece].outward;
-        length = portals->surface.piece_area[portal->largest_piece];
+        sum = portals->surface.pieces[portal->largest_piece].area;
+        length = enf_surface_piece_area(&portals->surface, portal->largest_piece);
     }
     if (!(length > 0)) {
         normal[0] = normal[1] = 0;
@@ -175,9 +175,10 @@ static void join_pieces(enf_portal_heap *portals, enf_portal *portal, const enf_
     else
         portals->piece_next[portal->last_piece] = other->first_piece;
     portal->last_piece = other->last_piece;
-    const double *areas = portals->surface.piece_area;
     int32_t a = portal->largest_piece, b = other->largest_piece;
-    if (a < 0 || areas[b] > areas[a] || (areas[b] == areas[a] && b < a)) portal->largest_piece = b;
+    double area_a = a < 0 ? -1 : enf_surface_piece_area(&portals->surface, a);
+    double area_b = enf_surface_piece_area(&portals->surface, b);
+    if (area_b > area_a || (area_b == area_a && b < a)) portal->largest_piece = b;
     portal->area += other->area;
     for (int k = 0; k < 3; ++k) portal->sum[k] += sign * other->sum[k];
 }
@@ -198,15 +199,16 @@ static void fill_portals(enf_portal_heap *portals) {
             link_portal(portals, number, 0);
             link_portal(portals, number, 1);
         }
-        const double *outward = surface->sides[2 * (size_t)piece].outward;
+        const double *outward = surface->pieces[piece].area;
         enf_portal added = {.first_piece = piece,
                             .last_piece = piece,
                             .largest_piece = piece,
-                            .area = surface->piece_area[piece],
+                            .area = enf_surface_piece_area(surface, piece),
                             .sum = {outward[0], outward[1], outward[2]}};
         join_pieces(portals, &portals->portals[number], &added, 1);
     }
     portals->portal_count = number + 1;
+    enf_surface_forget_cells(&portals->surface);
 }
 
 static int32_t count_portals(const enf_surface *surface) {
@@ -221,14 +223,15 @@ static int32_t count_portals(const enf_surface *surface) {
     return count;
 }
 
-enf_status enf_portal_heap_create(enf_portal_heap *portals, const enf_graph *graph, enf_heuristic heuristic,
+enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, enf_heuristic heuristic,
                                   enf_error *error) {
     *portals = (enf_portal_heap){.heuristic = heuristic};
+    size_t cells = (size_t)graph->cell_count;
     enf_status status = enf_surface_create(&portals->surface, graph, error);
+    enf_graph_free(graph);
     if (status != ENF_OK) return status;
     size_t pieces = (size_t)portals->surface.piece_count;
-    bool fine =
-        allocate(portals, (size_t)graph->cell_count, pieces, (size_t)count_portals(&portals->surface));
+    bool fine = allocate(portals, cells, pieces, (size_t)count_portals(&portals->surface));
     if (fine) fill_portals(portals);
     for (int32_t number = 0; fine && number < portals->portal_count; ++number) {
         double weight;
@@ -243,7 +246,7 @@ enf_status enf_portal_heap_create(enf_portal_heap *portals, const enf_graph *gra
 enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t *portal, double *weight, enf_error *error) {
     while ((*portal = enf_heap_top(&portals->heap)) >= 0) {
         enf_portal *top = &portals->portals[*portal];
-        double key = portals->heap.keys[*portal].weight;
+        double key = enf_heap_key_of(&portals->heap, *portal).weight;
         *weight = key;
         if (is_fresh(portals, top)) return ENF_OK;
         double bound = bound_weight(portals, top);
@@ -265,7 +268,7 @@ static void hand_over(enf_portal_heap *portals, int32_t number, int side, int32_
     portal->weighed_at[side] = portal->silhouette_at[side] = 0;
     *enf_pair_table_at(&portals->table, kept, portal->cell[!side]) = number;
     link_portal(portals, number, side);
-    set_key(portals, number, portals->heap.keys[number].weight);
+    set_key(portals, number, enf_heap_key_of(&portals->heap, number).weight);
 }
 
 static bool same_normal(const double a[3], const double b[3]) {
@@ -320,7 +323,7 @@ static void renumber(enf_portal_heap *portals, int32_t cell, int32_t smallest) {
     portals->smallest[cell] = smallest;
     for (int32_t number = portals->first_portal[cell]; number >= 0;) {
         const enf_portal *portal = &portals->portals[number];
-        set_key(portals, number, portals->heap.keys[number].weight);
+        set_key(portals, number, enf_heap_key_of(&portals->heap, number).weight);
         number = portal->next[side_of(portal, cell)];
     }
 }
@@ -336,7 +339,7 @@ void enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t 
     unlink_portal(portals, number, 0);
     unlink_portal(portals, number, 1);
     for (int32_t piece = portal->first_piece; piece >= 0; piece = portals->piece_next[piece])
-        portals->surface.piece_gone[piece] = true;
+        enf_surface_drop(&portals->surface, piece);
     // The cell with more portals keeps its place, so a portal is handed over only log n times.
     int32_t large = portals->degree[a] >= portals->degree[b] ? a : b, small = large == a ? b : a;
     if (!enf_surface_is_lid(&portals->surface, small)) ++portals->age[large];

@@ -48,7 +48,8 @@ typedef struct enf_portal_heap {
     size_t evaluations;    ///< weights computed
 } enf_portal_heap;
 
-enf_status enf_portal_heap_create(enf_portal_heap *portals, const enf_graph *graph, enf_heuristic heuristic,
+/// Takes the graph: it is empty afterwards, whatever the outcome.
+enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, enf_heuristic heuristic,
                                   enf_error *error);
 void enf_portal_heap_free(enf_portal_heap *portals);
 

@@ -12,11 +12,9 @@
 void enf_surface_free(enf_surface *surface) {
     free(surface->piece_cell);
     free(surface->piece_open);
-    free(surface->piece_gone);
-    free(surface->piece_area);
     free(surface->piece_edge);
     free(surface->piece_edges);
-    free(surface->sides);
+    free(surface->pieces);
     free(surface->edges);
     free(surface->vertices);
     free(surface->bodies);
@@ -32,24 +30,36 @@ void enf_surface_free(enf_surface *surface) {
 
 /// A piece of the graph on its way into canonical order.
 typedef struct sorted_piece {
-    uint32_t cells[2]; ///< -1 becomes the largest number
+    uint32_t beyond; ///< the larger of its cells; -1 becomes the largest number
     int32_t piece;
     int32_t start; ///< its smallest corner, where the outline begins
     bool turned;   ///< the outline is to be run backwards, because the cells were swapped
-    const enf_graph *graph;
 } sorted_piece;
 
-static const double *corner_of(const sorted_piece *sorted, int32_t i) {
-    const enf_graph *graph = sorted->graph;
+/// All of them, in lists by the smaller cell.
+typedef struct sorted_pieces {
+    const enf_graph *graph;
+    sorted_piece *pieces;
+    int32_t *first; ///< per cell and one more: where its list begins
+    int64_t corner_count;
+} sorted_pieces;
+
+static const double *corner_of(const enf_graph *graph, const sorted_piece *sorted, int32_t i) {
     int64_t begin = graph->piece_corner[sorted->piece], end = graph->piece_corner[sorted->piece + 1];
     int64_t count = end - begin,
             at = sorted->turned ? sorted->start - (int64_t)i : sorted->start + (int64_t)i;
-    return graph->corners[begin + ((at % count) + count) % count];
+    if (at < 0) at += count;
+    return graph->vertices[graph->corners[begin + (at < count ? at : at - count)]];
 }
 
-static int32_t corner_count_of(const sorted_piece *sorted) {
-    const enf_graph *graph = sorted->graph;
-    return (int32_t)(graph->piece_corner[sorted->piece + 1] - graph->piece_corner[sorted->piece]);
+/// The same in graph units.
+static void take_corner(const enf_graph *graph, const sorted_piece *sorted, int32_t i, double corner[3]) {
+    const double *at = corner_of(graph, sorted, i);
+    for (int k = 0; k < 3; ++k) corner[k] = at[k] * graph->scale;
+}
+
+static int32_t corner_count_of(const enf_graph *graph, int32_t piece) {
+    return (int32_t)(graph->piece_corner[piece + 1] - graph->piece_corner[piece]);
 }
 
 static int compare_points(const double a[3], const double b[3]) {
@@ -58,80 +68,126 @@ static int compare_points(const double a[3], const double b[3]) {
     return 0;
 }
 
-static int compare_pieces(const void *first, const void *second) {
-    const sorted_piece *a = first, *b = second;
-    for (int k = 0; k < 2; ++k)
-        if (a->cells[k] != b->cells[k]) return a->cells[k] < b->cells[k] ? -1 : 1;
-    bool open_a = a->graph->piece_open[a->piece], open_b = b->graph->piece_open[b->piece];
-    if (open_a != open_b) return open_a ? -1 : 1;
-    int32_t count_a = corner_count_of(a), count_b = corner_count_of(b);
+/// The order of pieces with the same smaller cell.
+static bool comes_before(const enf_graph *graph, const sorted_piece *a, const sorted_piece *b) {
+    if (a->beyond != b->beyond) return a->beyond < b->beyond;
+    bool open_a = graph->piece_open[a->piece], open_b = graph->piece_open[b->piece];
+    if (open_a != open_b) return open_a;
+    int32_t count_a = corner_count_of(graph, a->piece), count_b = corner_count_of(graph, b->piece);
     for (int32_t i = 0; i < count_a && i < count_b; ++i) {
-        int order = compare_points(corner_of(a, i), corner_of(b, i));
-        if (order) return order;
+        int order = compare_points(corner_of(graph, a, i), corner_of(graph, b, i));
+        if (order) return order < 0;
     }
-    return (count_a > count_b) - (count_a < count_b);
+    return count_a < count_b;
 }
 
-/// Checks one piece and prepares it for sorting; *wanted tells whether it bounds anything.
-static enf_status prepare_piece(const enf_graph *graph, int32_t piece, sorted_piece *sorted, bool *wanted,
-                                enf_error *error) {
+/// A heap sort: the lists are short, but one cell may have any number of pieces. Pieces that compare equal
+/// are equal to the last bit, so their order does not matter.
+static void sort_list(const enf_graph *graph, sorted_piece *list, int32_t count) {
+    for (int32_t built = count / 2, end = count; end > 1;) {
+        sorted_piece moved;
+        if (built > 0) {
+            moved = list[--built];
+        } else {
+            moved = list[--end];
+            list[end] = list[0];
+        }
+        int64_t place = built, child;
+        while ((child = 2 * place + 1) < end) {
+            if (child + 1 < end && comes_before(graph, &list[child], &list[child + 1])) ++child;
+            if (!comes_before(graph, &moved, &list[child])) break;
+            list[place] = list[child];
+            place = child;
+        }
+        list[place] = moved;
+    }
+}
+
+static enf_status check_piece(const enf_graph *graph, int32_t piece, enf_error *error) {
     int32_t back = graph->piece_cell[piece][0], front = graph->piece_cell[piece][1];
     int64_t begin = graph->piece_corner[piece], end = graph->piece_corner[piece + 1];
-    if (back < -1 || back >= graph->cell_count || front < -1 || front >= graph->cell_count || begin < 0 ||
-        end < begin || end - begin > INT32_MAX)
-        return enf_fail(error, ENF_BAD_INPUT,
-                        "cell graph: piece %d has cells %d and %d of %d, corners %lld to %lld", (int)piece,
-                        (int)back, (int)front, (int)graph->cell_count, (long long)begin, (long long)end);
-    *wanted = back != front && end - begin >= 3;
-    bool turned = (uint32_t)back > (uint32_t)front;
-    *sorted = (sorted_piece){.cells = {(uint32_t)(turned ? front : back), (uint32_t)(turned ? back : front)},
-                             .piece = piece,
-                             .turned = turned,
-                             .graph = graph};
-    for (int64_t i = begin + 1; i < end; ++i)
-        if (compare_points(graph->corners[i], graph->corners[begin + sorted->start]) < 0)
-            sorted->start = (int32_t)(i - begin);
-    return ENF_OK;
+    if (back >= -1 && back < graph->cell_count && front >= -1 && front < graph->cell_count && begin >= 0 &&
+        end >= begin && end - begin <= INT32_MAX)
+        return ENF_OK;
+    return enf_fail(error, ENF_BAD_INPUT,
+                    "cell graph: piece %d has cells %d and %d of %d, corners %lld to %lld", (int)piece,
+                    (int)back, (int)front, (int)graph->cell_count, (long long)begin, (long long)end);
 }
 
-static enf_status sort_pieces(const enf_graph *graph, sorted_piece *sorted, int32_t *count,
-                              int64_t *corner_count, enf_error *error) {
-    *count = 0;
-    *corner_count = 0;
+/// The smaller cell of a piece that bounds anything (-1 counts as the largest number), or -1.
+static int32_t lower_cell(const enf_graph *graph, int32_t piece) {
+    int32_t back = graph->piece_cell[piece][0], front = graph->piece_cell[piece][1];
+    if (back == front || corner_count_of(graph, piece) < 3) return -1;
+    return (uint32_t)back < (uint32_t)front ? back : front;
+}
+
+static void fill_list(const sorted_pieces *sorted, int32_t piece, int32_t *place) {
+    const enf_graph *graph = sorted->graph;
+    int32_t cell = lower_cell(graph, piece);
+    if (cell < 0) return;
+    int64_t begin = graph->piece_corner[piece], end = graph->piece_corner[piece + 1];
+    bool turned = graph->piece_cell[piece][0] != cell;
+    sorted_piece *added = &sorted->pieces[place[cell]++];
+    *added = (sorted_piece){
+        .beyond = (uint32_t)graph->piece_cell[piece][!turned], .piece = piece, .turned = turned};
+    for (int64_t i = begin + 1; i < end; ++i)
+        if (compare_points(graph->vertices[graph->corners[i]],
+                           graph->vertices[graph->corners[begin + added->start]]) < 0)
+            added->start = (int32_t)(i - begin);
+}
+
+static void free_sorted(sorted_pieces *sorted) {
+    free(sorted->pieces);
+    free(sorted->first);
+}
+
+/// Count, prefix sum, fill; then each cell's list by itself.
+static enf_status sort_pieces(sorted_pieces *sorted, const enf_graph *graph, enf_error *error) {
+    size_t cells = (size_t)graph->cell_count;
+    *sorted = (sorted_pieces){.graph = graph};
+    sorted->first = enf_array_zeroed(cells + 2, sizeof *sorted->first);
+    if (!sorted->first) return enf_fail_memory(error, "the pieces of the cell graph");
+    int32_t *place = sorted->first + 1; // shifted by one while filling
     for (int32_t piece = 0; piece < graph->piece_count; ++piece) {
-        bool wanted = false;
-        enf_status status = prepare_piece(graph, piece, &sorted[*count], &wanted, error);
+        enf_status status = check_piece(graph, piece, error);
         if (status != ENF_OK) return status;
-        if (wanted) *corner_count += corner_count_of(&sorted[(*count)++]);
+        int32_t cell = lower_cell(graph, piece);
+        if (cell < 0) continue;
+        ++place[cell + 1];
+        sorted->corner_count += corner_count_of(graph, piece);
     }
-    if (*corner_count > INT32_MAX / 2)
+    if (sorted->corner_count > INT32_MAX / 2)
         return enf_fail(error, ENF_NO_RESOURCES, "cell graph: more than %d corners; split the world",
                         INT32_MAX / 2);
-    qsort(sorted, (size_t)*count, sizeof *sorted, compare_pieces);
+    for (size_t i = 0; i < cells; ++i) place[i + 1] += place[i];
+    sorted->pieces = enf_array_new((size_t)place[cells], sizeof *sorted->pieces);
+    if (!sorted->pieces) return enf_fail_memory(error, "the pieces of the cell graph");
+    for (int32_t piece = 0; piece < graph->piece_count; ++piece) fill_list(sorted, piece, place);
+    for (size_t i = 0; i < cells; ++i)
+        sort_list(graph, sorted->pieces + sorted->first[i], sorted->first[i + 1] - sorted->first[i]);
     return ENF_OK;
 }
 
 static bool allocate(enf_surface *surface, size_t pieces, size_t corners, size_t cells) {
     surface->piece_cell = enf_array_new(pieces, sizeof *surface->piece_cell);
     surface->piece_open = enf_array_new(pieces, sizeof *surface->piece_open);
-    surface->piece_gone = enf_array_zeroed(pieces, sizeof *surface->piece_gone);
     surface->piece_hidden = enf_array_zeroed(pieces, sizeof *surface->piece_hidden);
-    surface->piece_area = enf_array_new(pieces, sizeof *surface->piece_area);
     surface->piece_edge = enf_array_zeroed(pieces + 1, sizeof *surface->piece_edge);
     surface->piece_edges = enf_array_new(corners, sizeof *surface->piece_edges);
-    surface->sides = enf_array_new(2 * pieces, sizeof *surface->sides);
-    surface->edges = enf_array_new(corners, sizeof *surface->edges);
-    surface->vertices = enf_array_new(corners, sizeof *surface->vertices);
-    surface->edge_sum = enf_array_zeroed(corners, sizeof *surface->edge_sum);
+    surface->pieces = enf_array_new(pieces, sizeof *surface->pieces);
     surface->bodies = enf_array_new(cells, sizeof *surface->bodies);
-    return surface->piece_cell && surface->piece_open && surface->piece_gone && surface->piece_hidden &&
-           surface->piece_area && surface->piece_edge && surface->piece_edges && surface->sides &&
-           surface->edges && surface->vertices && surface->edge_sum && surface->bodies;
+    return surface->piece_cell && surface->piece_open && surface->piece_hidden && surface->piece_edge &&
+           surface->piece_edges && surface->pieces && surface->bodies;
 }
 
-/// Finds or adds a vertex in a table of vertex numbers (open addressing).
-static int32_t vertex_at(enf_surface *surface, int32_t *table, size_t mask, const double corner[3]) {
-    double point[3] = {corner[0] + 0.0, corner[1] + 0.0, corner[2] + 0.0}; // -0 becomes 0
+/// Vertices by their coordinates: open addressing, at most half full, -1 is free.
+typedef struct vertex_table {
+    int32_t *slots;
+    size_t mask;
+} vertex_table;
+
+/// Where the point is, or would be.
+static size_t slot_of(const enf_surface *surface, const vertex_table *table, const double point[3]) {
     uint64_t hash = 0;
     for (int k = 0; k < 3; ++k) {
         uint64_t bits;
@@ -139,18 +195,47 @@ static int32_t vertex_at(enf_surface *surface, int32_t *table, size_t mask, cons
         hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
         hash ^= hash >> 32;
     }
-    for (size_t slot = hash & mask;; slot = (slot + 1) & mask) {
-        if (table[slot] < 0) {
-            table[slot] = surface->vertex_count;
-            memcpy(surface->vertices[surface->vertex_count], point, sizeof point);
-            return surface->vertex_count++;
-        }
-        if (memcmp(surface->vertices[table[slot]], point, sizeof point) == 0) return table[slot];
-    }
+    size_t slot = hash & table->mask;
+    while (table->slots[slot] >= 0 &&
+           memcmp(surface->vertices[table->slots[slot]], point, 3 * sizeof *point) != 0)
+        slot = (slot + 1) & table->mask;
+    return slot;
 }
 
+static bool grow_table(const enf_surface *surface, vertex_table *table) {
+    size_t slots = table->slots ? 2 * (table->mask + 1) : 1024;
+    int32_t *grown = enf_array_new(slots, sizeof *grown);
+    if (!grown) return false;
+    for (size_t i = 0; i < slots; ++i) grown[i] = -1;
+    free(table->slots);
+    *table = (vertex_table){grown, slots - 1};
+    for (int32_t v = 0; v < surface->vertex_count; ++v)
+        table->slots[slot_of(surface, table, surface->vertices[v])] = v;
+    return true;
+}
+
+/// Finds or adds a vertex. Negative without memory.
+static int32_t vertex_at(enf_surface *surface, vertex_table *table, const enf_graph *graph,
+                         const sorted_piece *sorted, int32_t corner) {
+    double point[3];
+    take_corner(graph, sorted, corner, point);
+    for (int k = 0; k < 3; ++k) point[k] += 0.0; // -0 becomes 0
+    if (2 * (size_t)surface->vertex_count >= table->mask && !grow_table(surface, table)) return -1;
+    size_t slot = slot_of(surface, table, point);
+    if (table->slots[slot] >= 0) return table->slots[slot];
+    if (!enf_array_reserve(surface->vertices, surface->vertex_capacity, (size_t)surface->vertex_count + 1))
+        return -1;
+    memcpy(surface->vertices[surface->vertex_count], point, sizeof point);
+    return table->slots[slot] = surface->vertex_count++;
+}
+
+/// Negative without memory.
 static int32_t edge_at(enf_surface *surface, enf_pair_table *table, int32_t from, int32_t to) {
-    int32_t *edge = enf_pair_table_at(table, from, to);
+    int32_t *edge = NULL;
+    if (enf_pair_table_reserve(table, (size_t)surface->edge_count + 1) &&
+        enf_array_reserve(surface->edges, surface->edge_capacity, (size_t)surface->edge_count + 1))
+        edge = enf_pair_table_at(table, from, to);
+    if (!edge) return -1;
     if (*edge < 0) {
         *edge = surface->edge_count++;
         surface->edges[*edge][0] = from < to ? from : to;
@@ -160,76 +245,109 @@ static int32_t edge_at(enf_surface *surface, enf_pair_table *table, int32_t from
 }
 
 /// Area vector of the outline, from the cross products with its first corner.
-static void measure_piece(enf_surface *surface, int32_t piece, const sorted_piece *sorted) {
-    double sum[3] = {0, 0, 0};
-    const double *origin = corner_of(sorted, 0);
-    for (int32_t i = 1; i + 1 < corner_count_of(sorted); ++i) {
-        const double *p = corner_of(sorted, i), *q = corner_of(sorted, i + 1);
+static void measure_piece(const enf_graph *graph, const sorted_piece *sorted, double area[3]) {
+    double sum[3] = {0, 0, 0}, origin[3];
+    take_corner(graph, sorted, 0, origin);
+    for (int32_t i = 1; i + 1 < corner_count_of(graph, sorted->piece); ++i) {
         double a[3], b[3];
+        take_corner(graph, sorted, i, a);
+        take_corner(graph, sorted, i + 1, b);
         for (int k = 0; k < 3; ++k) {
-            a[k] = p[k] - origin[k];
-            b[k] = q[k] - origin[k];
+            a[k] -= origin[k];
+            b[k] -= origin[k];
         }
         for (int k = 0; k < 3; ++k)
             sum[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
     }
-    enf_surface_side *sides = &surface->sides[2 * piece];
-    for (int k = 0; k < 3; ++k) {
-        sides[0].outward[k] = sum[k] / 2;
-        sides[1].outward[k] = -sum[k] / 2;
-    }
-    surface->piece_area[piece] = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / 2;
+    for (int k = 0; k < 3; ++k) area[k] = sum[k] / 2;
 }
 
-static bool fill_pieces(enf_surface *surface, const sorted_piece *sorted, int32_t count, size_t corners) {
-    size_t slots = 16;
-    while (slots < 2 * corners) slots *= 2;
-    int32_t *vertex_table = enf_array_new(slots, sizeof *vertex_table);
-    enf_pair_table edge_table;
-    if (!enf_pair_table_create(&edge_table, corners) || !vertex_table) {
-        free(vertex_table);
-        enf_pair_table_free(&edge_table);
-        return false;
+static double length_of(const double v[3]) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+void enf_surface_forget_cells(enf_surface *surface) {
+    free(surface->piece_cell);
+    free(surface->piece_open);
+    surface->piece_cell = NULL;
+    surface->piece_open = NULL;
+}
+
+double enf_surface_piece_area(const enf_surface *surface, int32_t piece) {
+    return length_of(surface->pieces[piece].area);
+}
+
+void enf_surface_drop(enf_surface *surface, int32_t piece) {
+    surface->pieces[piece].area[0] = NAN;
+}
+
+static bool is_gone(const enf_surface_piece *piece) {
+    return piece->area[0] != piece->area[0];
+}
+
+/// Appends the edges of one piece.
+static bool add_outline(enf_surface *surface, const enf_graph *graph, const sorted_piece *from,
+                        vertex_table *vertices, enf_pair_table *edges, int32_t *at) {
+    int32_t count = corner_count_of(graph, from->piece);
+    int32_t first = vertex_at(surface, vertices, graph, from, 0), last = first;
+    for (int32_t i = 1; i <= count; ++i) {
+        int32_t next = i < count ? vertex_at(surface, vertices, graph, from, i) : first;
+        if (last < 0 || next < 0) return false;
+        if (next == last) continue;
+        int32_t edge = edge_at(surface, edges, last, next);
+        if (edge < 0) return false;
+        surface->piece_edges[(*at)++] = edge;
+        last = next;
     }
-    for (size_t i = 0; i < slots; ++i) vertex_table[i] = -1;
-    int64_t at = 0;
-    for (int32_t piece = 0; piece < count; ++piece) {
-        const sorted_piece *from = &sorted[piece];
-        surface->piece_cell[piece][0] = (int32_t)from->cells[0];
-        surface->piece_cell[piece][1] = (int32_t)from->cells[1];
-        surface->piece_open[piece] = from->graph->piece_open[from->piece] && (int32_t)from->cells[1] >= 0;
-        measure_piece(surface, piece, from);
-        int32_t corner_count = corner_count_of(from);
-        int32_t first = vertex_at(surface, vertex_table, slots - 1, corner_of(from, 0)), last = first;
-        for (int32_t i = 1; i <= corner_count; ++i) {
-            int32_t next =
-                i < corner_count ? vertex_at(surface, vertex_table, slots - 1, corner_of(from, i)) : first;
-            if (next != last) surface->piece_edges[at++] = edge_at(surface, &edge_table, last, next);
-            last = next;
-        }
-        surface->piece_edge[piece + 1] = at;
-    }
-    surface->piece_count = count;
-    free(vertex_table);
-    enf_pair_table_free(&edge_table);
     return true;
+}
+
+static bool fill_pieces(enf_surface *surface, const sorted_pieces *sorted) {
+    const enf_graph *graph = sorted->graph;
+    vertex_table vertices = {0};
+    enf_pair_table edges;
+    bool good = enf_pair_table_create(&edges, 1024);
+    int32_t at = 0, piece = 0;
+    for (int32_t cell = 0; cell < graph->cell_count; ++cell) {
+        for (; good && piece < sorted->first[cell + 1]; ++piece) {
+            const sorted_piece *from = &sorted->pieces[piece];
+            surface->piece_cell[piece][0] = cell;
+            surface->piece_cell[piece][1] = (int32_t)from->beyond;
+            surface->piece_open[piece] = graph->piece_open[from->piece] && (int32_t)from->beyond >= 0;
+            measure_piece(graph, from, surface->pieces[piece].area);
+            good = add_outline(surface, graph, from, &vertices, &edges, &at);
+            surface->piece_edge[piece + 1] = at;
+        }
+    }
+    surface->piece_count = piece;
+    free(vertices.slots);
+    enf_pair_table_free(&edges);
+    surface->edge_sum = enf_array_zeroed((size_t)surface->edge_count, sizeof *surface->edge_sum);
+    return good && surface->edge_sum;
+}
+
+static int32_t *next_of(enf_surface *surface, int32_t side) {
+    return &surface->pieces[side / 2].next[side & 1];
+}
+
+/// Appends a list of sides to that of a body.
+static void append_sides(enf_surface *surface, enf_body *body, int32_t first, int32_t last) {
+    if (body->first_side < 0)
+        body->first_side = first;
+    else
+        *next_of(surface, body->last_side) = first;
+    if (last >= 0) body->last_side = last;
 }
 
 /// Adds a side to its fine cell's list, bounding box and (by the divergence theorem) volume.
 static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
     enf_body *body = &surface->bodies[cell];
-    enf_surface_side *added = &surface->sides[side];
-    added->next = -1;
-    bool first = body->first_side < 0;
-    if (first)
-        body->first_side = side;
-    else
-        surface->sides[body->last_side].next = side;
-    body->last_side = side;
-    ++body->side_count;
     int32_t piece = side / 2;
+    surface->pieces[piece].next[side & 1] = -1;
+    append_sides(surface, body, side, side);
+    ++body->side_count;
     const double *point = NULL, *origin = NULL;
-    for (int64_t i = surface->piece_edge[piece]; i < surface->piece_edge[piece + 1]; ++i)
+    for (int32_t i = surface->piece_edge[piece]; i < surface->piece_edge[piece + 1]; ++i)
         for (int end = 0; end < 2; ++end) {
             point = surface->vertices[surface->edges[surface->piece_edges[i] / 2][end]];
             for (int k = 0; k < 3; ++k) {
@@ -237,11 +355,14 @@ static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
                 body->high[k] = fmax(body->high[k], point[k]);
             }
         }
-    int64_t origin_edge = surface->piece_edge[body->first_side / 2];
+    int32_t origin_edge = surface->piece_edge[body->first_side / 2];
     if (origin_edge < surface->piece_edge[body->first_side / 2 + 1])
         origin = surface->vertices[surface->edges[surface->piece_edges[origin_edge] / 2][0]];
     if (!point || !origin) return;
-    for (int k = 0; k < 3; ++k) body->volume += (point[k] - origin[k]) * added->outward[k] / 3;
+    for (int k = 0; k < 3; ++k) {
+        double outward = surface->pieces[piece].area[k];
+        body->volume += (point[k] - origin[k]) * (side & 1 ? -outward : outward) / 3;
+    }
 }
 
 static void fill_bodies(enf_surface *surface, int32_t cell_count) {
@@ -260,15 +381,13 @@ static void fill_bodies(enf_surface *surface, int32_t cell_count) {
 
 enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_error *error) {
     *surface = (enf_surface){0};
-    sorted_piece *sorted = enf_array_new((size_t)graph->piece_count, sizeof *sorted);
-    if (!sorted) return enf_fail_memory(error, "the pieces of the cell graph");
-    int32_t count;
-    int64_t corners;
-    enf_status status = sort_pieces(graph, sorted, &count, &corners, error);
-    if (status == ENF_OK && (!allocate(surface, (size_t)count, (size_t)corners, (size_t)graph->cell_count) ||
-                             !fill_pieces(surface, sorted, count, (size_t)corners)))
+    sorted_pieces sorted;
+    enf_status status = sort_pieces(&sorted, graph, error);
+    if (status == ENF_OK && (!allocate(surface, (size_t)sorted.first[graph->cell_count],
+                                       (size_t)sorted.corner_count, (size_t)graph->cell_count) ||
+                             !fill_pieces(surface, &sorted)))
         status = enf_fail_memory(error, "the surfaces of the cells");
-    free(sorted);
+    free_sorted(&sorted);
     if (status == ENF_OK)
         fill_bodies(surface, graph->cell_count);
     else
@@ -278,11 +397,7 @@ enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_
 
 void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
     enf_body *body = &surface->bodies[kept], *other = &surface->bodies[gone];
-    if (body->first_side < 0)
-        body->first_side = other->first_side;
-    else
-        surface->sides[body->last_side].next = other->first_side;
-    if (other->last_side >= 0) body->last_side = other->last_side;
+    append_sides(surface, body, other->first_side, other->last_side);
     body->side_count += other->side_count;
     body->fine_count += other->fine_count;
     body->volume += other->volume;
@@ -303,23 +418,25 @@ static double dot(const double a[3], const double b[3]) {
 static double collect_facing(enf_surface *surface, int32_t cell, const double direction[3],
                              size_t *facing_count) {
     enf_body *body = &surface->bodies[cell];
+    bool hiding = surface->hidden_count > 0;
     double sum = 0;
     int32_t last = -1;
     for (int32_t side = body->first_side, next; side >= 0; side = next) {
-        next = surface->sides[side].next;
-        if (surface->piece_gone[side / 2]) {
+        const enf_surface_piece *piece = &surface->pieces[side / 2];
+        next = piece->next[side & 1];
+        if (is_gone(piece)) {
             if (last < 0)
                 body->first_side = next;
             else
-                surface->sides[last].next = next;
+                *next_of(surface, last) = next;
             --body->side_count;
             continue;
         }
         last = side;
-        if (surface->piece_hidden[side / 2]) continue;
-        double projected = dot(surface->sides[side].outward, direction);
+        if (hiding && surface->piece_hidden[side / 2]) continue;
+        double projected = dot(piece->area, direction);
         sum += fabs(projected);
-        if (projected > 0) surface->facing[(*facing_count)++] = side;
+        if (side & 1 ? projected < 0 : projected > 0) surface->facing[(*facing_count)++] = side;
     }
     body->last_side = last;
     return sum / 2;
@@ -341,9 +458,10 @@ static void show_pieces(enf_surface *surface, size_t from) {
 bool enf_surface_plug(enf_surface *surface, int32_t neighbour, const double direction[3],
                       size_t hidden_before) {
     bool towards = false, away = false;
-    for (int32_t side = surface->bodies[neighbour].first_side; side >= 0; side = surface->sides[side].next) {
-        if (surface->piece_gone[side / 2] || surface->piece_hidden[side / 2]) continue;
-        double projected = dot(surface->sides[side].outward, direction);
+    for (int32_t side = surface->bodies[neighbour].first_side; side >= 0; side = *next_of(surface, side)) {
+        if (is_gone(&surface->pieces[side / 2]) || surface->piece_hidden[side / 2]) continue;
+        double projected = dot(surface->pieces[side / 2].area, direction);
+        if (side & 1) projected = -projected;
         towards = towards || projected > 0;
         away = away || projected < 0;
     }
@@ -392,12 +510,12 @@ static bool sum_edges(enf_surface *surface, size_t facing_count, size_t *touched
     size_t count = 0;
     for (size_t i = 0; i < facing_count; ++i) {
         int32_t side = surface->facing[i], piece = side / 2;
-        int64_t begin = surface->piece_edge[piece], end = surface->piece_edge[piece + 1];
+        int32_t begin = surface->piece_edge[piece], end = surface->piece_edge[piece + 1];
         if (!enf_array_reserve(surface->touched, surface->touched_capacity, count + (size_t)(end - begin))) {
             for (size_t k = 0; k < count; ++k) surface->edge_sum[surface->touched[k]] = 0;
             return false;
         }
-        for (int64_t k = begin; k < end; ++k) {
+        for (int32_t k = begin; k < end; ++k) {
             int32_t edge = surface->piece_edges[k] / 2;
             bool backwards = (surface->piece_edges[k] & 1) != (side & 1);
             surface->edge_sum[edge] += backwards ? -1 : 1;
@@ -447,12 +565,14 @@ double enf_surface_silhouette_bound(const enf_surface *surface, int32_t cell, co
 }
 
 bool enf_surface_is_lid(const enf_surface *surface, int32_t cell) {
-    const enf_surface_side *sides = surface->sides, *only = NULL;
-    for (int32_t side = surface->bodies[cell].first_side, seen = 0; side >= 0; side = sides[side].next) {
+    const enf_surface_piece *pieces = surface->pieces;
+    bool found = false;
+    for (int32_t side = surface->bodies[cell].first_side, seen = 0; side >= 0;
+         side = pieces[side / 2].next[side & 1]) {
         if (++seen > 32) return false;
-        if (surface->piece_gone[side / 2]) continue;
-        if (only) return false;
-        only = &sides[side];
+        if (is_gone(&pieces[side / 2])) continue;
+        if (found) return false;
+        found = true;
     }
     return true;
 }

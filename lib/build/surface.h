@@ -11,11 +11,12 @@
 #include "build/graph.h"
 #include "build/silhouette.h"
 
-/// A piece as one of its two cells sees it. Side s of piece p is number 2p + s.
-typedef struct enf_surface_side {
-    double outward[3]; ///< area vector, pointing out of the cell
-    int32_t next;      ///< the next side of the same cell, or -1
-} enf_surface_side;
+/// A piece. As its cell s (0, 1) sees it, it is side number 2 * piece + s.
+typedef struct enf_surface_piece {
+    double area[3];  ///< area vector, pointing out of cell 0, into cell 1; [0] is NaN when the piece is gone:
+                     ///< its cells have become one
+    int32_t next[2]; ///< the next side of the same cell, or -1
+} enf_surface_piece;
 
 /// What is known of a cell as a body.
 typedef struct enf_body {
@@ -31,18 +32,18 @@ typedef struct enf_body {
 typedef struct enf_surface {
     int32_t piece_count;
     int32_t (*piece_cell)[2]; ///< fine cells; the smaller number first, -1 last
-    bool *piece_open;
-    bool *piece_gone;     ///< the cells of an open piece have become one
-    double *piece_area;   ///< true area
-    int64_t *piece_edge;  ///< piece_count + 1 offsets into piece_edges
+    bool *piece_open;         ///< these two until enf_surface_forget_cells
+    int32_t *piece_edge;      ///< piece_count + 1 offsets into piece_edges
     int32_t *piece_edges; ///< 2 * edge, + 1 when the outline (counter-clockwise seen from cell 1's side) runs
                           ///< it backwards
-    enf_surface_side *sides;
+    enf_surface_piece *pieces;
 
     int32_t edge_count;
     int32_t (*edges)[2]; ///< vertex numbers
+    size_t edge_capacity;
     int32_t vertex_count;
     double (*vertices)[3]; ///< corners that are equal to the last bit are one vertex
+    size_t vertex_capacity;
 
     int32_t cell_count;
     enf_body *bodies;
@@ -63,7 +64,16 @@ typedef struct enf_surface {
 enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_error *error);
 void enf_surface_free(enf_surface *surface);
 
-/// Adds the body of `gone` to that of `kept`. The pieces between them must be marked as gone before the next
+/// Frees what tells which piece belongs to which fine cells: nothing below asks for it.
+void enf_surface_forget_cells(enf_surface *surface);
+
+/// The true area of a piece that is not gone.
+double enf_surface_piece_area(const enf_surface *surface, int32_t piece);
+
+/// An open piece whose cells have become one.
+void enf_surface_drop(enf_surface *surface, int32_t piece);
+
+/// Adds the body of `gone` to that of `kept`. The pieces between them must be dropped before the next
 /// silhouette.
 void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone);
 
