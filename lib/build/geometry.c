@@ -379,24 +379,9 @@ static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int
     return holding >= 2;
 }
 
-static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
-                            const enf_plane_filter *filter) {
-    if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
-    double value = filter->offset * crossing->weight, magnitude = fabs(value), reach = 0;
-    for (int i = 0; i < 3; i++) {
-        double term = filter->normal[i] * crossing->at[i];
-        value += term;
-        magnitude += fabs(term);
-        reach += fabs(crossing->at[i]);
-    }
-    double error = 6 * U * magnitude + filter->normal_error * (reach + 3 * crossing->at_error) +
-                   3 * filter->normal_size * crossing->at_error +
-                   filter->offset_error * (fabs(crossing->weight) + crossing->weight_error) +
-                   fabs(filter->offset) * crossing->weight_error;
-    if (fabs(value) > 1.01 * error) {
-        geometry->decided_by_filter++;
-        return value > 0 ? crossing->weight_sign : -crossing->weight_sign;
-    }
+/// Where rounding may hide the side.
+static int decide_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
+                           const enf_plane_filter *filter, double value, double magnitude, double error) {
     if (error == 6 * U * magnitude &&
         magnitude < 0x1p53 * fmin(filter->normal_unit * crossing->at_unit,
                                   filter->offset_unit * crossing->weight_unit)) {
@@ -413,6 +398,27 @@ static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing
     exact_plane_of(geometry, plane, &exact[3]);
     // The determinant is the weight times the fourth plane's value at the crossing.
     return determinant_sign(&exact[0], &exact[1], &exact[2], &exact[3]) * crossing->weight_sign;
+}
+
+static inline int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
+                                   const enf_plane_filter *filter) {
+    if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
+    double value = filter->offset * crossing->weight, magnitude = fabs(value), reach = 0;
+    for (int i = 0; i < 3; i++) {
+        double term = filter->normal[i] * crossing->at[i];
+        value += term;
+        magnitude += fabs(term);
+        reach += fabs(crossing->at[i]);
+    }
+    double error = 6 * U * magnitude + filter->normal_error * (reach + 3 * crossing->at_error) +
+                   3 * filter->normal_size * crossing->at_error +
+                   filter->offset_error * (fabs(crossing->weight) + crossing->weight_error) +
+                   fabs(filter->offset) * crossing->weight_error;
+    if (fabs(value) > 1.01 * error) {
+        geometry->decided_by_filter++;
+        return value > 0 ? crossing->weight_sign : -crossing->weight_sign;
+    }
+    return decide_crossing(geometry, crossing, plane, filter, value, magnitude, error);
 }
 
 int enf_geometry_side_by(enf_geometry *geometry, int32_t vertex, int32_t plane,
