@@ -86,8 +86,7 @@ static void set_key(enf_portal_heap *portals, int32_t number, double weight) {
 }
 
 static bool is_fresh(const enf_portal_heap *portals, const enf_portal *portal) {
-    return portal->weighed_at[0] == portals->age[portal->cell[0]] &&
-           portal->weighed_at[1] == portals->age[portal->cell[1]];
+    return portal->weighed_at == portals->age[portal->cell[0]] + portals->age[portal->cell[1]];
 }
 
 /// A lower bound of the weight that costs no look at the surfaces.
@@ -143,7 +142,7 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
         portal->silhouette[s] = area;
         portal->silhouette_at[s] = portals->age[portal->cell[s]];
     }
-    for (int s = 0; s < 2; ++s) portal->weighed_at[s] = portals->age[portal->cell[s]];
+    portal->weighed_at = portals->age[portal->cell[0]] + portals->age[portal->cell[1]];
     ++portals->evaluations;
     *weight = weight_of(portals, portal, largest);
     return true;
@@ -265,7 +264,7 @@ enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t *portal, double
 static void hand_over(enf_portal_heap *portals, int32_t number, int side, int32_t kept) {
     enf_portal *portal = &portals->portals[number];
     portal->cell[side] = kept;
-    portal->weighed_at[side] = portal->silhouette_at[side] = 0;
+    portal->weighed_at = portal->silhouette_at[side] = 0;
     *enf_pair_table_at(&portals->table, kept, portal->cell[!side]) = number;
     link_portal(portals, number, side);
     set_key(portals, number, enf_heap_key_of(&portals->heap, number).weight);
@@ -293,7 +292,7 @@ static void join_portals(enf_portal_heap *portals, int32_t number, int side, con
             portal->silhouette_at[!side] = other->silhouette_at[!other_side];
         }
     }
-    portal->weighed_at[0] = portal->weighed_at[1] = 0;
+    portal->weighed_at = 0;
     set_key(portals, number, bound_weight(portals, portal));
 }
 

@@ -25,7 +25,8 @@ typedef struct enf_portal {
     int32_t cell[2];              ///< the two cells
     int32_t next[2], previous[2]; ///< in the list of portals of each cell
     int32_t first_piece, last_piece, largest_piece;
-    uint32_t weighed_at[2]; ///< the ages of the cells when the weight was computed; 0: it is a lower bound
+    uint32_t weighed_at; ///< the ages of the cells, added up, when the weight was computed; 0: it is a
+                         ///< lower bound
     uint32_t
         silhouette_at[2]; ///< the age of the cell when its silhouette was computed; 0: it is a lower bound
     double silhouette[2]; ///< of each cell, seen along the normal

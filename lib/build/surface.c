@@ -339,6 +339,11 @@ static void append_sides(enf_surface *surface, enf_body *body, int32_t first, in
     if (last >= 0) body->last_side = last;
 }
 
+static float round_down(double value) {
+    float rounded = (float)value;
+    return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
+}
+
 /// Adds a side to its fine cell's list, bounding box and (by the divergence theorem) volume.
 static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
     enf_body *body = &surface->bodies[cell];
@@ -351,8 +356,8 @@ static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
         for (int end = 0; end < 2; ++end) {
             point = surface->vertices[surface->edges[surface->piece_edges[i] / 2][end]];
             for (int k = 0; k < 3; ++k) {
-                body->low[k] = fmin(body->low[k], point[k]);
-                body->high[k] = fmax(body->high[k], point[k]);
+                body->low[k] = fminf(body->low[k], round_down(point[k]));
+                body->high[k] = fmaxf(body->high[k], -round_down(-point[k]));
             }
         }
     int32_t origin_edge = surface->piece_edge[body->first_side / 2];
@@ -402,8 +407,8 @@ void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
     body->fine_count += other->fine_count;
     body->volume += other->volume;
     for (int k = 0; k < 3; ++k) {
-        body->low[k] = fmin(body->low[k], other->low[k]);
-        body->high[k] = fmax(body->high[k], other->high[k]);
+        body->low[k] = fminf(body->low[k], other->low[k]);
+        body->high[k] = fmaxf(body->high[k], other->high[k]);
     }
     other->first_side = other->last_side = -1;
     other->side_count = 0;
@@ -560,7 +565,7 @@ double enf_surface_silhouette(enf_surface *surface, int32_t cell, const double d
 double enf_surface_silhouette_bound(const enf_surface *surface, int32_t cell, const double direction[3]) {
     const enf_body *body = &surface->bodies[cell];
     double extent = 0;
-    for (int k = 0; k < 3; ++k) extent += fabs(direction[k]) * (body->high[k] - body->low[k]);
+    for (int k = 0; k < 3; ++k) extent += fabs(direction[k]) * ((double)body->high[k] - (double)body->low[k]);
     return extent > 0 && body->volume > 0 ? body->volume / extent * (1 - 0x1p-20) : 0;
 }
 

@@ -24,7 +24,7 @@ typedef struct enf_body {
     int32_t side_count;            ///< length of that list
     int32_t fine_count;            ///< fine cells in it; 1: convex
     double volume;
-    double low[3], high[3]; ///< bounding box
+    float low[3], high[3]; ///< bounding box, rounded outwards
 } enf_body;
 
 /// Pieces are numbered canonically (by their cells, then their corners), so nothing depends on their order in
