@@ -10,6 +10,7 @@
 static const cli_command benches[] = {
     {"thesis", "the worlds of the thesis: cells, splits, rooms found", cli_bench_thesis},
     {"levels", "DIR: compile every level in a folder; a row each", cli_bench_levels},
+    {"memory", "DIR: memory predicted and taken", cli_bench_memory},
     {"cells", "DIR: soup to coloured cells against the Delaunay triangulation alone", cli_bench_cells},
     {"solid", "DIR: solid or air against the union of the brushes", cli_bench_solid},
     {"recovery", "DIR: levels rotated and rounded, against themselves", cli_bench_recovery},

@@ -10,6 +10,7 @@ int cli_bench_thesis(int argc, char **argv);
 
 /// Compiles every level in a folder, each in a process of its own; a row each.
 int cli_bench_levels(int argc, char **argv);
+int cli_bench_memory(int argc, char **argv);
 
 /// Soup to coloured cells of every level in a folder, against the Delaunay triangulation of the same vertices
 /// alone.

@@ -11,6 +11,7 @@
 typedef struct cli_settings {
     int tetrahedralizer, heuristic, keep, pvs, threads;
     const char *stop;
+    uint64_t memory;              ///< 0: not given
     double weld, plane_tolerance; ///< < 0: not given
     bool plain_cells;
     cli_texts exclude, detail;
@@ -62,6 +63,9 @@ extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const
          "leave fine cells as the cuts make them; otherwise convex ones are joined",                           \
          NULL,                                                                                                 \
          false},                                                                                               \
+        {"--memory",  0,      CLI_BYTES,                                                                       \
+         &(s).memory, "SIZE", "refuse what will need more, as 16G; default: what the system allows",           \
+         NULL,        false},                                                                                  \
     {                                                                                                          \
         "--threads", 0, CLI_COUNT, &(s).threads, "N", "default: one per core; the result is the same", NULL,   \
             false                                                                                              \

@@ -3,6 +3,7 @@
 #include "cli/options.h"
 
 #include "base/array.h"
+#include "build/memory_estimate.h"
 
 #include <errno.h>
 #include <math.h>
@@ -109,6 +110,11 @@ static int set(const cli_syntax *syntax, cli_option *option, const char *value) 
         return cli_misuse(syntax, "%s: '%.100s' is no number; write one that is 0 or more", option->name,
                           value);
     }
+    case CLI_BYTES:
+        if (enf_memory_parse(value, option->target)) return -1;
+        return cli_misuse(syntax,
+                          "%s: '%.100s' is no size; write a whole number with K, M, G or T, as in 16G",
+                          option->name, value);
     case CLI_COUNT:
         return read_count(syntax, option, value);
     case CLI_CHOICE:

@@ -12,6 +12,7 @@ typedef enum cli_option_kind {
     CLI_LENGTH, ///< double, finite, >= 0
     CLI_COUNT,  ///< int, 1..1024
     CLI_CHOICE, ///< int, the position in `choices`
+    CLI_BYTES,  ///< uint64_t, above 0; "512M", "16G"
     CLI_POINTS, ///< cli_points; "X,Y,Z"; may be repeated
 } cli_option_kind;
 

@@ -162,6 +162,8 @@ void cli_report_json(const cli_job *job, FILE *out) {
     put_stages(&json, job);
     enf_json_number(&json, "seconds", job->seconds);
     enf_json_whole(&json, "peak_bytes", (int64_t)job->peak_bytes);
+    enf_json_whole(&json, "peak_bytes_least", (int64_t)job->build.peak_bytes_least);
+    enf_json_whole(&json, "peak_bytes_predicted", (int64_t)job->build.peak_bytes_predicted);
     enf_json_whole(&json, "file_bytes", (int64_t)job->file_size);
     enf_json_whole(&json, "threads", job->settings->threads);
     enf_json_raw(&json, "options", job->options_json);
@@ -226,5 +228,10 @@ void cli_report_verbose(const cli_job *job, FILE *out) {
     print_stage(out, &job->read);
     for (int i = 0; i < build->stage_count; i++) print_stage(out, &build->stages[i]);
     print_stage(out, &job->write);
+    fprintf(
+        out,
+        "  memory: at most %.0f MB; predicted %.0f MB, and at least %.0f MB before there were tetrahedra\n",
+        (double)job->peak_bytes / 1e6, (double)build->peak_bytes_predicted / 1e6,
+        (double)build->peak_bytes_least / 1e6);
     print_more(job, &counts, out);
 }

@@ -165,6 +165,14 @@ static void a_polygon_of_ten_million_corners_is_left_out(void **state) {
     unlink("wide.obj");
 }
 
+static void a_world_that_will_not_fit_is_refused(void **state) {
+    (void)state;
+    write_file("box.obj", BOX, strlen(BOX));
+    expect_failure("compile box.obj -o out.enf --memory 1M", 4, "--memory allows 1 MiB");
+    expect_success("compile box.obj -o out.enf -q --memory 4G");
+    unlink("out.enf");
+}
+
 static void paths_that_cannot_be_read_are_told(void **state) {
     (void)state;
     assert_int_equal(mkdir("folder.obj", 0700), 0);
@@ -240,6 +248,10 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"compile box.obj -o out.enf --threads 0", "whole number from 1"},
         {"compile box.obj -o out.enf --threads 2.5", "whole number from 1"},
         {"compile box.obj -o out.enf --threads 99999999999999999999", "whole number from 1"},
+        {"compile box.obj -o out.enf --memory 0", "is no size"},
+        {"compile box.obj -o out.enf --memory 16GB", "is no size"},
+        {"compile box.obj -o out.enf --memory 1.5G", "is no size"},
+        {"compile box.obj -o out.enf --memory", "--memory needs a value"},
         {"compile box.obj -o out.enf --progress sometimes", "choose one of auto, always, never"},
         {"compile box.obj -o box.obj", "would be written over"},
         {"compile box.obj -o ./box.obj", "would be written over"},
@@ -423,6 +435,7 @@ int main(void) {
         cmocka_unit_test(every_bad_input_is_refused_with_file_line_and_reason),
         cmocka_unit_test(a_gzip_file_that_ends_early_is_refused),
         cmocka_unit_test(a_polygon_of_ten_million_corners_is_left_out),
+        cmocka_unit_test(a_world_that_will_not_fit_is_refused),
         cmocka_unit_test(paths_that_cannot_be_read_are_told),
         cmocka_unit_test(outputs_that_cannot_be_written_are_told_and_leave_nothing),
         cmocka_unit_test(bad_options_are_refused_with_the_usage_line),

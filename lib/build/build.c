@@ -80,18 +80,26 @@ static enf_status clean(kitchen *k) {
 
 static enf_status tetrahedralize(kitchen *k) {
     const enf_mesh *mesh = &k->build->mesh;
+    enf_memory_counts *counts = &k->build->counts;
+    *counts = enf_memory_count(&k->build->soup, mesh);
+    k->build->peak_bytes_least = k->build->peak_bytes_predicted = enf_memory_estimate(counts);
+    enf_status status = enf_memory_admit(counts, k->options->memory, k->error);
+    if (status != ENF_OK) return status;
     enf_tetrahedra made = {0};
     bool tetgen = k->options->tetrahedralizer == ENF_TETRAHEDRALIZER_TETGEN;
-    enf_status status = tetgen ? enf_shim_delaunay_tetgen(mesh->points, mesh->point_count, &made, k->error)
-                               : enf_shim_delaunay_cgal(mesh->points, mesh->point_count, &made, k->error);
+    status = tetgen ? enf_shim_delaunay_tetgen(mesh->points, mesh->point_count, &made, k->error)
+                    : enf_shim_delaunay_cgal(mesh->points, mesh->point_count, &made, k->error);
     if (status != ENF_OK) return status;
     if (!enf_tetrahedra_sort(made.corners, made.count, mesh->points, mesh->point_count)) {
         free(made.corners);
         return enf_fail_memory(k->error, "the tetrahedra");
     }
     status = enf_tet_mesh_pair(&k->tets, made.corners, made.count, (int32_t)mesh->point_count, k->error);
-    if (status == ENF_OK) say(k, "%d tetrahedra by %s", (int)k->tets.count, tetgen ? "TetGen" : "CGAL");
-    return status;
+    if (status != ENF_OK) return status;
+    say(k, "%d tetrahedra by %s", (int)k->tets.count, tetgen ? "TetGen" : "CGAL");
+    enf_memory_count_tetrahedra(counts, mesh, &k->tets);
+    k->build->peak_bytes_predicted = enf_memory_estimate(counts);
+    return enf_memory_admit(counts, k->options->memory, k->error);
 }
 
 static enf_status split(kitchen *k) {

@@ -4,6 +4,7 @@
 #define ENF_BUILD_BUILD_H
 
 #include "build/decimate.h"
+#include "build/memory_estimate.h"
 #include "build/portal.h"
 #include "build/region.h"
 
@@ -32,6 +33,7 @@ typedef struct enf_build_options {
     enf_keep keep;
     bool plain_cells; ///< leave fine cells as the cuts make them; otherwise convex ones are joined
     int threads;
+    uint64_t memory;        ///< bytes that the process may have at most; 0: what the system allows
     int stages;             ///< run only this many, the first; 0: all
     enf_progress *progress; ///< may be null
     void *progress_user;
@@ -64,10 +66,15 @@ typedef struct enf_build {
     int stage_count;
     double seconds;
     uint64_t peak_bytes;
+    enf_memory_counts counts;      ///< what the estimates of memory were made from
+    uint64_t peak_bytes_least;     ///< estimate after clean: of a world whose polygons cut nothing
+    uint64_t peak_bytes_predicted; ///< estimate once there are tetrahedra
 } enf_build;
 
 void enf_build_free(enf_build *build);
 
+/// Memory is estimated after clean, and again once there are tetrahedra; a world that will not fit is refused
+/// then (ENF_NO_RESOURCES).
 /// Runs clean to portals, or the first stages of them, over build->soup (already read). On failure the build
 /// can only be freed.
 enf_status enf_build_run(enf_build *build, const enf_build_options *options, enf_error *error);
