@@ -125,18 +125,30 @@ static bool add_covers(enf_settler *s, int32_t first) {
     return true;
 }
 
-/// The facet's outline.
+/// The facet's outline, without corners on straight lines (as enf_facet_loop), straight into the complex.
 static bool add_loop(enf_settler *s, int32_t facet) {
+    const enf_half *halves = s->space->halves;
     enf_loops *loops = &s->complex->facets;
-    if (s->space->facets[facet].first == ENF_FACET_WHOLE) {
+    int32_t first = s->space->facets[facet].first, h = first;
+    if (first == ENF_FACET_WHOLE) {
         int32_t corner[3], plane[3];
         enf_subdivision_triangle(&s->arrangement->tets, s->space->facets[facet].source, corner, plane);
         const enf_corner corners[3] = {{corner[1], plane[1]}, {corner[2], plane[2]}, {corner[0], plane[0]}};
         return enf_loops_append(loops, corners, 3);
     }
-    s->pool.corner_count = 0;
-    enf_loop loop = enf_facet_loop(s->space, facet, &s->pool);
-    return !s->pool.failed && enf_loops_append(loops, s->pool.corners + loop.first, loop.count);
+    if (!enf_array_reserve(loops->offset, loops->offset_capacity, (size_t)loops->count + 2)) return false;
+    loops->offset[0] = 0;
+    do {
+        const enf_half *half = &halves[h], *next = &halves[half->next];
+        if (next->edge_plane != half->edge_plane) {
+            if (!enf_array_reserve(loops->corners, loops->corner_capacity, loops->corner_count + 1))
+                return false;
+            loops->corners[loops->corner_count++] = (enf_corner){next->vertex, next->edge_plane};
+        }
+        h = half->next;
+    } while (h != first);
+    loops->offset[++loops->count] = (int64_t)loops->corner_count;
+    return true;
 }
 
 bool enf_emit_facet(enf_settler *s, int32_t facet) {
