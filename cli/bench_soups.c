@@ -108,8 +108,8 @@ static bool print_row(const row *row, const cli_child *child) {
            result->polygons, result->tetrahedra, result->fine_cells);
     print_bound(row);
     printf("  %-20s ", row->soup->peer);
-    if (compiled && row->soup->peer_seconds > 0)
-        printf("%5.1fx  ", row->soup->peer_seconds / seconds);
+    if (compiled && row->soup->peer_seconds > 0) // the peer stops at cells, too
+        printf("%5.1fx  ", row->soup->peer_seconds / result->cell_seconds);
     else
         printf("%6s  ", "-");
     bool fine = print_outcome(row, child);

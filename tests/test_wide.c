@@ -98,6 +98,36 @@ static void setting_keeps_every_128_bit_number(void **unused) {
     numbers_clear(&n);
 }
 
+static void set_signed(mpz_t out, enf_int128 value) {
+    enf_wide number;
+    enf_wide_set(&number, value);
+    to_gmp(out, &number);
+}
+
+static void parts_that_overlap_add_up(void **unused) {
+    (void)unused;
+    uint64_t state = seed + 7;
+    numbers n;
+    numbers_init(&n);
+    for (long i = 0; i < scaled(100000); i++) {
+        enf_int128 part[2];
+        for (int k = 0; k < 2; k++) {
+            enf_uint128 bits = (enf_uint128)next_random(&state) << 64 | next_random(&state);
+            part[k] = (enf_int128)bits >> (next_random(&state) % 126 + 2 * (k == 0));
+        }
+        if (i % 4 == 0) part[1] = -((part[0] >> 63) * ((enf_int128)1 << 64)); // they nearly cancel
+        if (i % 8 == 0) part[0] >>= 63;                                       // or do
+        enf_wide number;
+        enf_wide_set_parts(&number, part[0], part[1]);
+        set_signed(n.a, part[0]);
+        set_signed(n.b, part[1]);
+        mpz_mul_2exp(n.expected, n.a, 64);
+        mpz_add(n.expected, n.expected, n.b);
+        assert_same(&number, n.expected);
+    }
+    numbers_clear(&n);
+}
+
 static void sums_and_differences_are_exact_also_in_place(void **unused) {
     (void)unused;
     uint64_t state = seed + 1;
@@ -198,6 +228,7 @@ static void quotients_are_within_five_units_in_the_last_place(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(setting_keeps_every_128_bit_number),
+        cmocka_unit_test(parts_that_overlap_add_up),
         cmocka_unit_test(sums_and_differences_are_exact_also_in_place),
         cmocka_unit_test(products_are_exact_up_to_512_bits),
         cmocka_unit_test(quotients_are_within_five_units_in_the_last_place),

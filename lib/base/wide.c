@@ -15,6 +15,20 @@ void enf_wide_set(enf_wide *result, enf_int128 value) {
     result->sign = value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
+void enf_wide_set_parts(enf_wide *result, enf_int128 high, enf_int128 low) {
+    high += low >> 64;
+    uint64_t limb = (uint64_t)low;
+    result->sign = high < 0 ? -1 : high > 0 || limb ? 1 : 0;
+    if (high < 0) {
+        high = ~high + (limb == 0);
+        limb = -limb;
+    }
+    result->limb[0] = limb;
+    result->limb[1] = (uint64_t)high;
+    result->limb[2] = (uint64_t)(high >> 64);
+    result->size = result->limb[2] ? 3 : result->limb[1] ? 2 : limb ? 1 : 0;
+}
+
 static int compare_magnitudes(const enf_wide *a, const enf_wide *b) {
     if (a->size != b->size) return a->size < b->size ? -1 : 1;
     for (int i = a->size - 1; i >= 0; i--) {
@@ -91,11 +105,15 @@ void enf_wide_multiply(enf_wide *result, const enf_wide *a, const enf_wide *b) {
     result->sign = a->sign * b->sign;
     result->size = 0;
     if (result->sign == 0) return;
-    int size = a->size + b->size;
-    uint64_t limb[2 * ENF_WIDE_LIMBS];
-    memset(limb, 0, (size_t)size * sizeof *limb);
-    for (int i = 0; i < a->size; i++) {
-        uint64_t carry = 0;
+    uint64_t limb[2 * ENF_WIDE_LIMBS], carry = 0;
+    for (int j = 0; j < b->size; j++) {
+        enf_uint128 sum = (enf_uint128)a->limb[0] * b->limb[j] + carry;
+        limb[j] = (uint64_t)sum;
+        carry = (uint64_t)(sum >> 64);
+    }
+    limb[b->size] = carry;
+    for (int i = 1; i < a->size; i++) {
+        carry = 0;
         for (int j = 0; j < b->size; j++) {
             enf_uint128 sum = (enf_uint128)a->limb[i] * b->limb[j] + limb[i + j] + carry;
             limb[i + j] = (uint64_t)sum;
@@ -103,9 +121,10 @@ void enf_wide_multiply(enf_wide *result, const enf_wide *a, const enf_wide *b) {
         }
         limb[i + b->size] = carry;
     }
-    while (limb[size - 1] == 0) size--;
+    int size = a->size + b->size;
+    size -= limb[size - 1] == 0; // the highest limbs of the factors are not 0
     assert(size <= ENF_WIDE_LIMBS);
-    memcpy(result->limb, limb, (size_t)size * sizeof *limb);
+    for (int i = 0; i < size; i++) result->limb[i] = limb[i];
     result->size = size;
 }
 

@@ -19,6 +19,8 @@ __extension__ typedef __int128 enf_int128;
 __extension__ typedef unsigned __int128 enf_uint128;
 
 void enf_wide_set(enf_wide *result, enf_int128 value);
+void enf_wide_set_parts(enf_wide *result, enf_int128 high,
+                        enf_int128 low); ///< 2^64 * high + low, sum < 2^191
 void enf_wide_add(enf_wide *result, const enf_wide *a, const enf_wide *b);
 void enf_wide_subtract(enf_wide *result, const enf_wide *a, const enf_wide *b);
 void enf_wide_multiply(enf_wide *result, const enf_wide *a, const enf_wide *b); ///< result must not be a or b

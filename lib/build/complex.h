@@ -49,14 +49,12 @@ typedef struct enf_complex {
     const double *points; ///< xyz, grid steps; borrowed from the mesh
 
     int32_t plane_count;
-    size_t plane_capacity;
     /// Three point numbers; the front side is where they turn counter-clockwise. If [2] is -1 - a (a = 0, 1,
     /// 2), the plane goes through points [0] and [1], parallel to axis a: as if its third point were [0] plus
     /// one step along a.
     int32_t (*planes)[3];
 
-    int32_t vertex_count; ///< the first point_count vertices are the points
-    size_t vertex_capacity;
+    int32_t vertex_count;         ///< the first point_count vertices are the points
     int32_t (*vertex_planes)[3];  ///< vertex_count entries; -1 -1 -1 for points
     double (*vertex_position)[3]; ///< grid steps; rounded for crossings
 
@@ -67,7 +65,6 @@ typedef struct enf_complex {
     int32_t (*tetrahedra)[4];  ///< point numbers, positively oriented
     int32_t *tetrahedron_root; ///< >= 0: a node; < 0: the fine cell -1 - root
     int32_t node_count;
-    size_t node_capacity;
     int32_t *node_plane;
     int32_t (*node_child)[2]; ///< behind, in front of the plane; >= 0 node, < 0 fine cell -1 - child
 

@@ -65,7 +65,10 @@ static bool find_thin(const enf_complex *complex, double crack, const uint8_t *w
     bool good = s.volume && s.surface && s.tip;
     if (good) {
         memset(s.tip, 0xff, cells * sizeof *s.tip);
-        for (int32_t f = 0; f < complex->facet_count; f++) add_facet(complex, &s, f);
+        for (int32_t f = 0; f < complex->facet_count; f++) {
+            const int32_t *cell = complex->facet_cell[f];
+            if ((cell[0] >= 0 && wall[cell[0]]) || (cell[1] >= 0 && wall[cell[1]])) add_facet(complex, &s, f);
+        }
         for (int32_t c = 0; c < complex->cell_count; c++) {
             enf_body_size body = {.low = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
                                   .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};

@@ -22,17 +22,15 @@ static int axis_of(int32_t code) {
     return -1 - code;
 }
 
-/// The vectors from the plane's first point to its other two.
+/// The vectors from the first to the other two of a plane's three points.
 static void plane_spans(const enf_geometry *geometry, int32_t plane, double u[3], double v[3]) {
     const int32_t *defined = geometry->planes[plane];
     const double *p = geometry->points + 3 * (size_t)defined[0],
-                 *q = geometry->points + 3 * (size_t)defined[1];
-    for (int i = 0; i < 3; i++) u[i] = q[i] - p[i];
-    if (defined[2] < 0) {
-        for (int i = 0; i < 3; i++) v[i] = i == axis_of(defined[2]);
-    } else {
-        const double *r = geometry->points + 3 * (size_t)defined[2];
-        for (int i = 0; i < 3; i++) v[i] = r[i] - p[i];
+                 *q = geometry->points + 3 * (size_t)defined[1],
+                 *r = geometry->points + 3 * (size_t)defined[2];
+    for (int i = 0; i < 3; i++) {
+        u[i] = q[i] - p[i];
+        v[i] = r[i] - p[i];
     }
 }
 
@@ -57,27 +55,35 @@ static void whole_spans(const enf_geometry *geometry, int32_t plane, int64_t u[3
 }
 
 /// Planes square to an axis get the normal +1 or -1: exact, and small enough to keep crossings exact as well.
-static void make_square_filter(const enf_geometry *geometry, int32_t plane, int axis,
-                               enf_plane_filter *filter) {
-    const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
-    int j = (axis + 1) % 3, k = (axis + 2) % 3;
-    int64_t u[3], v[3];
-    whole_spans(geometry, plane, u, v);
-    enf_int128 area = (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j];
-    double sign = area > 0 ? 1 : -1;
+static void set_square_filter(const double *p, int axis, double sign, enf_plane_filter *filter) {
     for (int i = 0; i < 3; i++) filter->normal[i] = i == axis ? sign : 0;
+    filter->axis = axis;
     filter->offset = -sign * p[axis];
     filter->normal_size = filter->normal_unit = 1;
     filter->offset_unit = enf_points_unit(&p, 1);
     filter->normal_error = filter->offset_error = 0;
 }
 
+static void make_square_filter(const enf_geometry *geometry, int32_t plane, int axis,
+                               enf_plane_filter *filter) {
+    int j = (axis + 1) % 3, k = (axis + 2) % 3;
+    int64_t u[3], v[3];
+    whole_spans(geometry, plane, u, v);
+    enf_int128 area = (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j];
+    set_square_filter(geometry->points + 3 * (size_t)geometry->planes[plane][0], axis, area > 0 ? 1 : -1,
+                      filter);
+}
+
 /// The plane through two points along an axis: the normal is their difference, turned.
 static void make_edge_filter(const enf_geometry *geometry, const int32_t *defined, enf_plane_filter *filter) {
     const double *p = geometry->points + 3 * (size_t)defined[0],
                  *q = geometry->points + 3 * (size_t)defined[1];
-    int axis = axis_of(defined[2]), j = (axis + 1) % 3, k = (axis + 2) % 3;
+    int axis = axis_of(defined[2]), j = axis < 2 ? axis + 1 : 0, k = axis > 0 ? axis - 1 : 2;
     double u = q[j] - p[j], v = q[k] - p[k];
+    if (u == 0 || v == 0) {
+        set_square_filter(p, u == 0 ? j : k, (u == 0 ? v : -u) > 0 ? 1 : -1, filter);
+        return;
+    }
     filter->axis = -1;
     filter->normal[axis] = 0;
     filter->normal[j] = v;
@@ -94,14 +100,14 @@ static void make_edge_filter(const enf_geometry *geometry, const int32_t *define
 
 void enf_geometry_make_filter(const enf_geometry *geometry, int32_t plane, enf_plane_filter *filter) {
     const int32_t *defined = geometry->planes[plane];
+    if (defined[2] < 0) {
+        make_edge_filter(geometry, defined, filter);
+        return;
+    }
     const double *p = geometry->points + 3 * (size_t)defined[0];
     double u[3], v[3], bound = 0;
     plane_spans(geometry, plane, u, v);
     filter->axis = square_axis(u, v);
-    if (filter->axis < 0 && defined[2] < 0) {
-        make_edge_filter(geometry, defined, filter);
-        return;
-    }
     if (filter->axis >= 0) {
         make_square_filter(geometry, plane, filter->axis, filter);
         return;
@@ -124,9 +130,9 @@ void enf_geometry_make_filter(const enf_geometry *geometry, int32_t plane, enf_p
     filter->offset_error = 5 * U * magnitude + 1.001 * filter->normal_error * reach;
 
     const double *corners[3] = {p, geometry->points + 3 * (size_t)defined[1],
-                                geometry->points + 3 * (size_t)(defined[2] < 0 ? defined[1] : defined[2])};
+                                geometry->points + 3 * (size_t)defined[2]};
     double unit = enf_points_unit(corners, 3);
-    filter->normal_unit = defined[2] < 0 ? unit : unit * unit;
+    filter->normal_unit = unit * unit;
     filter->offset_unit = filter->normal_unit * unit;
     if (bound < 0x1p53 * filter->normal_unit) filter->normal_error = 0;
     if (filter->normal_error == 0 && magnitude < 0x1p53 * filter->offset_unit) filter->offset_error = 0;
@@ -154,14 +160,15 @@ static void exact_plane_of(const enf_geometry *geometry, int32_t plane, exact_pl
     const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
     int64_t u[3], v[3];
     whole_spans(geometry, plane, u, v);
-    out->offset.sign = out->offset.size = 0;
+    enf_int128 high = 0, low = 0; // of the offset, in halves of the normal
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        enf_wide coordinate;
-        enf_wide_set(&out->normal[i], (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j]);
-        enf_wide_set(&coordinate, (int64_t)p[i]);
-        enf_wide_subtract_product(&out->offset, &out->normal[i], &coordinate);
+        enf_int128 normal = (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j];
+        enf_wide_set(&out->normal[i], normal);
+        high -= (normal >> 64) * (int64_t)p[i];
+        low -= (enf_int128)(uint64_t)normal * (int64_t)p[i];
     }
+    enf_wide_set_parts(&out->offset, high, low);
 }
 
 static const enf_wide *component(const exact_plane *plane, int i) {
@@ -284,8 +291,27 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
 // ---------------------------------------------------------------------------------------------- the
 // predicate
 
-static int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane,
-                         const enf_plane_filter *filter) {
+/// Where rounding may hide the side.
+static int decide_point(enf_geometry *geometry, const double *x, int32_t plane,
+                        const enf_plane_filter *filter, double value, double magnitude) {
+    const int32_t *defined = geometry->planes[plane];
+    const double *p = geometry->points + 3 * (size_t)defined[0],
+                 *q = geometry->points + 3 * (size_t)defined[1];
+    double unit = filter->normal_unit * enf_points_unit((const double *const[]){x, p}, 2);
+    if (filter->normal_error == 0 && magnitude < 0x1p53 * unit) { // nothing was rounded: 0 is 0
+        geometry->decided_by_filter++;
+        return value > 0 ? 1 : value < 0 ? -1 : 0;
+    }
+    geometry->decided_exactly++;
+    double third[3];
+    if (defined[2] >= 0) return enf_points_orient(p, q, geometry->points + 3 * (size_t)defined[2], x);
+    int axis = axis_of(defined[2]), step = p[axis] > 0 ? -1 : 1; // one step beyond 2^53 is no double
+    for (int i = 0; i < 3; i++) third[i] = i == axis ? p[i] + step : p[i];
+    return step * enf_points_orient(p, q, third, x);
+}
+
+static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane,
+                                const enf_plane_filter *filter) {
     const int32_t *defined = geometry->planes[plane];
     if (point == defined[0] || point == defined[1] || point == defined[2]) return 0;
     const double *x = geometry->points + 3 * (size_t)point, *p = geometry->points + 3 * (size_t)defined[0];
@@ -306,18 +332,7 @@ static int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane,
         geometry->decided_by_filter++;
         return value > 0 ? 1 : -1;
     }
-    double unit = filter->normal_unit * enf_points_unit((const double *const[]){x, p}, 2);
-    if (filter->normal_error == 0 && magnitude < 0x1p53 * unit) { // nothing was rounded: 0 is 0
-        geometry->decided_by_filter++;
-        return value > 0 ? 1 : value < 0 ? -1 : 0;
-    }
-    geometry->decided_exactly++;
-    double third[3];
-    const double *q = geometry->points + 3 * (size_t)defined[1];
-    if (defined[2] >= 0) return enf_points_orient(p, q, geometry->points + 3 * (size_t)defined[2], x);
-    int axis = axis_of(defined[2]), step = p[axis] > 0 ? -1 : 1; // one step beyond 2^53 is no double
-    for (int i = 0; i < 3; i++) third[i] = i == axis ? p[i] + step : p[i];
-    return step * enf_points_orient(p, q, third, x);
+    return decide_point(geometry, x, plane, filter, value, magnitude);
 }
 
 const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t vertex) {
@@ -364,24 +379,9 @@ static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int
     return holding >= 2;
 }
 
-static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
-                            const enf_plane_filter *filter) {
-    if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
-    double value = filter->offset * crossing->weight, magnitude = fabs(value), reach = 0;
-    for (int i = 0; i < 3; i++) {
-        double term = filter->normal[i] * crossing->at[i];
-        value += term;
-        magnitude += fabs(term);
-        reach += fabs(crossing->at[i]);
-    }
-    double error = 6 * U * magnitude + filter->normal_error * (reach + 3 * crossing->at_error) +
-                   3 * filter->normal_size * crossing->at_error +
-                   filter->offset_error * (fabs(crossing->weight) + crossing->weight_error) +
-                   fabs(filter->offset) * crossing->weight_error;
-    if (fabs(value) > 1.01 * error) {
-        geometry->decided_by_filter++;
-        return value > 0 ? crossing->weight_sign : -crossing->weight_sign;
-    }
+/// Where rounding may hide the side.
+static int decide_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
+                           const enf_plane_filter *filter, double value, double magnitude, double error) {
     if (error == 6 * U * magnitude &&
         magnitude < 0x1p53 * fmin(filter->normal_unit * crossing->at_unit,
                                   filter->offset_unit * crossing->weight_unit)) {
@@ -400,10 +400,42 @@ static int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing
     return determinant_sign(&exact[0], &exact[1], &exact[2], &exact[3]) * crossing->weight_sign;
 }
 
+static inline int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
+                                   const enf_plane_filter *filter) {
+    if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
+    double value = filter->offset * crossing->weight, magnitude = fabs(value), reach = 0;
+    for (int i = 0; i < 3; i++) {
+        double term = filter->normal[i] * crossing->at[i];
+        value += term;
+        magnitude += fabs(term);
+        reach += fabs(crossing->at[i]);
+    }
+    double error = 6 * U * magnitude + filter->normal_error * (reach + 3 * crossing->at_error) +
+                   3 * filter->normal_size * crossing->at_error +
+                   filter->offset_error * (fabs(crossing->weight) + crossing->weight_error) +
+                   fabs(filter->offset) * crossing->weight_error;
+    if (fabs(value) > 1.01 * error) {
+        geometry->decided_by_filter++;
+        return value > 0 ? crossing->weight_sign : -crossing->weight_sign;
+    }
+    return decide_crossing(geometry, crossing, plane, filter, value, magnitude, error);
+}
+
 int enf_geometry_side_by(enf_geometry *geometry, int32_t vertex, int32_t plane,
                          const enf_plane_filter *filter) {
     if (vertex < geometry->point_count) return side_of_point(geometry, vertex, plane, filter);
     return side_of_crossing(geometry, enf_geometry_crossing(geometry, vertex), plane, filter);
+}
+
+void enf_geometry_sides_by(enf_geometry *geometry, int32_t vertex, int32_t first_plane, uint32_t wanted,
+                           const enf_plane_filter *filters, uint32_t sides[2]) {
+    sides[0] = sides[1] = 0;
+    for (uint32_t left = wanted; left; left &= left - 1) {
+        int i = __builtin_ctz(left);
+        int side = enf_geometry_side_by(geometry, vertex, first_plane + i, &filters[i]);
+        sides[0] |= (uint32_t)(side < 0) << i;
+        sides[1] |= (uint32_t)(side > 0) << i;
+    }
 }
 
 int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane) {

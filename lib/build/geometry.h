@@ -75,6 +75,11 @@ int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane);
 int enf_geometry_side_by(enf_geometry *geometry, int32_t vertex, int32_t plane,
                          const enf_plane_filter *filter);
 
+/// The same for the wanted ones of a row of up to 32 planes, a bit each: those that have the vertex behind
+/// them, and those that have it in front.
+void enf_geometry_sides_by(enf_geometry *geometry, int32_t vertex, int32_t first_plane, uint32_t wanted,
+                           const enf_plane_filter *filters, uint32_t sides[2]);
+
 /// A hash that is the same for planes that are (up to rounding, with rare exceptions) the same, whichever way
 /// they face: a first sieve before the exact test.
 uint64_t enf_geometry_plane_bucket(const enf_geometry *geometry, int32_t plane);

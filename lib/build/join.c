@@ -178,7 +178,11 @@ static bool is_door(const enf_subdivision *s, int32_t f) {
         int side = facet->cell[1] == front;
         next = facet->next[side];
         if (facet->cell[1 - side] != behind) continue;
-        facet_area(s, g, area);
+        if (g == f) {
+            memcpy(area, direction, sizeof area);
+        } else {
+            facet_area(s, g, area);
+        }
         opening += fabs(area[0] * direction[0] + area[1] * direction[1] + area[2] * direction[2]);
     }
     return shadow_exceeds(s, behind, direction, opening / OPENING_MIN) ||

@@ -13,13 +13,7 @@ void enf_pool_free(enf_pool *pool) {
     free(pool->geometry.crossings);
     free(pool->corners);
     free(pool->signs);
-    free(pool->cut);
     memset(pool, 0, sizeof *pool);
-}
-
-void enf_pool_empty(enf_pool *pool) {
-    pool->corner_count = 0;
-    pool->geometry.crossing_count = 0;
 }
 
 static void add_corner(enf_pool *pool, enf_loop *loop, int32_t vertex, int32_t edge_plane) {
@@ -78,22 +72,6 @@ enf_position enf_pool_classify(enf_pool *pool, enf_loop loop, int32_t plane) {
     return behind ? ENF_POSITION_BEHIND : front ? ENF_POSITION_FRONT : ENF_POSITION_ON;
 }
 
-static int32_t cut_vertex(enf_pool *pool, int32_t from, int32_t to, int32_t a, int32_t b, int32_t c) {
-    int32_t low = from < to ? from : to, high = from < to ? to : from;
-    if (pool->share_cut) {
-        for (size_t i = 0; i < pool->cut_count; i++) {
-            if (pool->cut[i].low == low && pool->cut[i].high == high) return pool->cut[i].vertex;
-        }
-        if (!enf_array_reserve(pool->cut, pool->cut_capacity, pool->cut_count + 1)) {
-            pool->failed = true;
-            return -1;
-        }
-    }
-    int32_t vertex = enf_geometry_cross(&pool->geometry, a, b, c);
-    if (pool->share_cut) pool->cut[pool->cut_count++] = (enf_cut_vertex){low, high, vertex};
-    return vertex;
-}
-
 /// The part of the loop whose corners have sign `side` or 0. New vertices come from `crossing`, one for each
 /// of the two edges that cross, in the order met; they are made on the first pass.
 static enf_loop part(enf_pool *pool, enf_loop loop, int32_t plane, int side, const int32_t crossing[2]) {
@@ -124,8 +102,7 @@ void enf_pool_cut(enf_pool *pool, enf_loop loop, int32_t plane, enf_loop *behind
         int32_t next = i + 1 < loop.count ? i + 1 : 0;
         if (pool->signs[i] * pool->signs[next] >= 0) continue;
         enf_corner here = pool->corners[loop.first + i];
-        int32_t to = pool->corners[loop.first + next].vertex;
-        crossing[met++] = cut_vertex(pool, here.vertex, to, loop.plane, here.edge_plane, plane);
+        crossing[met++] = enf_geometry_cross(&pool->geometry, loop.plane, here.edge_plane, plane);
     }
     if (behind) *behind = part(pool, loop, plane, -1, crossing);
     if (front) *front = part(pool, loop, plane, +1, crossing);
@@ -156,14 +133,6 @@ int enf_pool_edge_side(enf_pool *pool, enf_loop loop, int32_t i) {
         if (sign != 0) return sign;
     }
     return 0;
-}
-
-bool enf_pool_intersect(enf_pool *pool, enf_loop *loop, enf_loop other) {
-    for (int32_t i = 0; i < other.count; i++) {
-        int side = enf_pool_edge_side(pool, other, i);
-        if (!enf_pool_keep(pool, loop, pool->corners[other.first + i].edge_plane, side)) return false;
-    }
-    return true;
 }
 
 void enf_loop_area(const enf_corner *corners, int64_t count, const double (*positions)[3], double area[3]) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Convex polygons on planes (loops), and cutting them with planes, exactly. A pool holds the loops of one
-// small job (a tetrahedron, a facet) and is emptied in one go.
+// small job (a facet, a wall of portals).
 #ifndef ENF_BUILD_LOOP_H
 #define ENF_BUILD_LOOP_H
 
@@ -13,25 +13,16 @@ typedef struct enf_loop {
     int32_t first, count; ///< corners in the pool
 } enf_loop;
 
-/// New vertices of one cut, kept so that the two faces at an edge get the same one.
-typedef struct enf_cut_vertex {
-    int32_t low, high, vertex; ///< the edge's ends, low < high
-} enf_cut_vertex;
-
 typedef struct enf_pool {
     enf_geometry geometry;
     enf_corner *corners;
     size_t corner_count, corner_capacity;
     int8_t *signs; ///< of the last loop that was classified
     size_t sign_capacity;
-    enf_cut_vertex *cut;
-    size_t cut_count, cut_capacity;
-    bool share_cut; ///< look up and fill `cut`
-    bool failed;    ///< out of memory, sometime since the pool was made
+    bool failed; ///< out of memory, sometime since the pool was made
 } enf_pool;
 
 void enf_pool_free(enf_pool *pool);
-void enf_pool_empty(enf_pool *pool); ///< drops all loops and own crossings, keeps the memory
 
 /// A loop of `count` corners, copied into the pool.
 enf_loop enf_pool_loop(enf_pool *pool, int32_t plane, const enf_corner *corners, int32_t count);
@@ -60,9 +51,6 @@ bool enf_pool_keep(enf_pool *pool, enf_loop *loop, int32_t plane, int side);
 
 /// The side (-1 or +1) of the edge plane of its corner `i` on which a loop lies.
 int enf_pool_edge_side(enf_pool *pool, enf_loop loop, int32_t i);
-
-/// Keeps the part of *loop that lies in `other` (on the same plane). False if no area is left.
-bool enf_pool_intersect(enf_pool *pool, enf_loop *loop, enf_loop other);
 
 /// Area vector (by the right-hand rule along the corners) from rounded positions.
 void enf_loop_area(const enf_corner *corners, int64_t count, const double (*positions)[3], double area[3]);

@@ -56,15 +56,38 @@ static int compare_keys(const void *left, const void *right, void *pieces) {
     return order ? order : (a->piece > b->piece) - (a->piece < b->piece);
 }
 
+/// The keys dealt out by their first corner: what is left to sort is a few at a time. False without memory.
+static bool deal_keys(const enf_pieces *pieces, sort_key *keys) {
+    int32_t most = 0;
+    for (size_t i = 0; i < pieces->count; i++) {
+        int32_t first = pieces->corners[pieces->corner[i]];
+        most = first > most ? first : most;
+    }
+    size_t *next = enf_array_zeroed((size_t)most + 2, sizeof *next);
+    if (!next) return false;
+    for (size_t i = 0; i < pieces->count; i++) next[pieces->corners[pieces->corner[i]] + 1]++;
+    for (int32_t p = 0; p < most; p++) next[p + 1] += next[p];
+    for (size_t i = 0; i < pieces->count; i++) {
+        const int32_t *ring = &pieces->corners[pieces->corner[i]];
+        sort_key *key = &keys[next[ring[0]]++];
+        memcpy(key->first, ring, sizeof key->first);
+        key->piece = (int32_t)i;
+    }
+    free(next);
+    return true;
+}
+
 enf_status enf_pieces_sort(const enf_pieces *pieces, int32_t *order, int32_t *copies, size_t *kept,
                            enf_error *error) {
     sort_key *keys = enf_array_new(pieces->count, sizeof *keys);
-    if (!keys) return enf_fail_memory(error, "sorting the polygons");
-    for (size_t i = 0; i < pieces->count; i++) {
-        memcpy(keys[i].first, &pieces->corners[pieces->corner[i]], sizeof keys[i].first);
-        keys[i].piece = (int32_t)i;
+    if (!keys || !deal_keys(pieces, keys)) {
+        free(keys);
+        return enf_fail_memory(error, "sorting the polygons");
     }
-    qsort_r(keys, pieces->count, sizeof *keys, compare_keys, (void *)pieces);
+    for (size_t begin = 0, end; begin < pieces->count; begin = end) {
+        for (end = begin + 1; end < pieces->count && keys[end].first[0] == keys[begin].first[0];) end++;
+        if (end - begin > 1) qsort_r(keys + begin, end - begin, sizeof *keys, compare_keys, (void *)pieces);
+    }
     *kept = 0;
     for (size_t i = 0; i < pieces->count; i++) {
         if (*kept == 0 || compare_pieces(pieces, order[*kept - 1], keys[i].piece) != 0) {
@@ -77,9 +100,9 @@ enf_status enf_pieces_sort(const enf_pieces *pieces, int32_t *order, int32_t *co
     return ENF_OK;
 }
 
-static bool is_among(const enf_pieces *pieces, const int32_t *order, size_t kept, const int32_t *ring,
-                     size_t count) {
-    size_t low = 0, high = kept;
+/// Is the ring among order[low .. high - 1], which are sorted?
+static bool is_among(const enf_pieces *pieces, const int32_t *order, size_t low, size_t high,
+                     const int32_t *ring, size_t count) {
     while (low < high) {
         size_t middle = low + (high - low) / 2;
         int side = compare_rings(&pieces->corners[pieces->corner[order[middle]]],
@@ -93,21 +116,30 @@ static bool is_among(const enf_pieces *pieces, const int32_t *order, size_t kept
     return false;
 }
 
+static int32_t first_corner(const enf_pieces *pieces, int32_t piece) {
+    return pieces->corners[pieces->corner[piece]];
+}
+
+/// A ring and its twin begin at the same corner.
 enf_status enf_pieces_count_two_sided(const enf_pieces *pieces, const int32_t *order, size_t kept,
                                       size_t *two_sided, enf_error *error) {
     int32_t *reversed = NULL;
     size_t capacity = 0;
     *two_sided = 0;
-    for (size_t i = 0; i < kept; i++) {
-        const int32_t *ring = &pieces->corners[pieces->corner[order[i]]];
-        size_t count = enf_pieces_size(pieces, order[i]);
-        if (!enf_array_reserve(reversed, capacity, count)) {
-            free(reversed);
-            return enf_fail_memory(error, "the polygons");
+    for (size_t begin = 0, end; begin < kept; begin = end) {
+        int32_t first = first_corner(pieces, order[begin]);
+        for (end = begin + 1; end < kept && first_corner(pieces, order[end]) == first;) end++;
+        for (size_t i = begin; i < end && end - begin > 1; i++) {
+            const int32_t *ring = &pieces->corners[pieces->corner[order[i]]];
+            size_t count = enf_pieces_size(pieces, order[i]);
+            if (!enf_array_reserve(reversed, capacity, count)) {
+                free(reversed);
+                return enf_fail_memory(error, "the polygons");
+            }
+            reversed[0] = ring[0];
+            for (size_t k = 1; k < count; k++) reversed[k] = ring[count - k];
+            *two_sided += is_among(pieces, order, begin, end, reversed, count);
         }
-        reversed[0] = ring[0];
-        for (size_t k = 1; k < count; k++) reversed[k] = ring[count - k];
-        *two_sided += is_among(pieces, order, kept, reversed, count);
     }
     free(reversed);
     return ENF_OK;

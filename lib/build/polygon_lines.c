@@ -36,15 +36,10 @@ void enf_polygon_lines_take(enf_polygon_lines *lines, const enf_arrangement *arr
 }
 
 void enf_polygon_lines_find(enf_polygon_lines *lines, enf_geometry *geometry, int32_t vertex) {
-    uint32_t inside = 0, outside = 0;
-    for (uint32_t left = lines->wanted; left; left &= left - 1) {
-        int i = __builtin_ctz(left);
-        int side = enf_geometry_side_by(geometry, vertex, lines->first_plane + i, &lines->filters[i]);
-        if (side < 0) inside |= UINT32_C(1) << i;
-        if (side > 0) outside |= UINT32_C(1) << i;
-    }
+    uint32_t sides[2];
+    enf_geometry_sides_by(geometry, vertex, lines->first_plane, lines->wanted, lines->filters, sides);
     enf_line_sides *known = &lines->known[vertex];
     known->mark = lines->mark;
-    known->inside = inside;
-    known->outside = outside;
+    known->inside = sides[0];
+    known->outside = sides[1];
 }

@@ -15,6 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+/// On which sides of a plane a polygon's corners lie: 1 some behind, 2 some in front.
+typedef struct polygon_sides {
+    int32_t polygon, plane, sides;
+} polygon_sides;
+
+enum { SIDES_KNOWN = 1024 }; ///< the last ones: two polygons meet in many cells, one after the other
+
 typedef struct cutter {
     enf_arrangement *arrangement;
     enf_subdivision *space;
@@ -26,7 +33,8 @@ typedef struct cutter {
     enf_candidate *candidates;
     size_t candidate_capacity;
     size_t ref_capacity;
-    bool failed; ///< out of memory
+    polygon_sides *known; ///< by a hash of polygon and plane
+    bool failed;          ///< out of memory
 } cutter;
 
 static void add_hit(cutter *c, int32_t source) {
@@ -124,13 +132,16 @@ static void cut_cell(cutter *c, int32_t cell) {
 // ---------------------------------------------------------------------------------------------- one
 // tetrahedron
 
-/// The sides of a plane on which the polygon's corners lie: 1 some behind, 2 some in front.
 static int corner_sides(const cutter *c, int32_t plane) {
+    uint32_t hash = (uint32_t)c->lines.polygon * UINT32_C(0x9E3779B1) + (uint32_t)plane;
+    polygon_sides *known = &c->known[(hash ^ hash >> 16) % SIDES_KNOWN];
+    if (known->polygon == c->lines.polygon && known->plane == plane) return known->sides;
     int sides = 0;
     for (int32_t i = 0; i < c->lines.count && sides != 3; i++) {
         int side = enf_geometry_side(&c->space->geometry, c->lines.corners[i], plane);
         sides |= side < 0 ? 1 : side > 0 ? 2 : 0;
     }
+    *known = (polygon_sides){c->lines.polygon, plane, sides};
     return sides;
 }
 
@@ -393,12 +404,15 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     good = good && enf_polygon_lines_reserve(&c.lines, arrangement->mesh->point_count);
     good = good && enf_settler_start(&c.settler, arrangement, c.space, complex);
     c.settler.join = !arrangement->plain;
+    c.known = enf_array_zeroed(SIDES_KNOWN, sizeof *c.known); // no polygon lies in plane 0: that is a facet's
+    good = good && c.known;
     if (good) stopped = !cut_all(&c, &candidates, &watched);
     good = good && !c.failed;
     enf_candidates_free(&candidates);
     if (good) finish(complex, arrangement, &c.settler.joiner);
     enf_settler_free(&c.settler);
     enf_polygon_lines_free(&c.lines);
+    free(c.known);
     free(c.refs);
     free(c.candidates);
     free(c.hits);

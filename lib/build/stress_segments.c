@@ -257,6 +257,28 @@ static double unevenness(const enf_soup *soup, int64_t first, int64_t count, dou
     return isfinite(most) ? most : HUGE_VAL;
 }
 
+/// Do all corners lie within `reach` grid steps of the line through two of them?
+static bool is_needle(const enf_soup *soup, int64_t first, int64_t count, double step, double reach) {
+    double longest = 0, way[3] = {0, 0, 0}, from[3], to[3] = {0, 0, 0};
+    const double *points = soup->points;
+    for (int a = 0; a < 3; a++) from[a] = points[3 * (size_t)soup->corner_point[first] + (size_t)a] / step;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int64_t i = 1; i < count; i++) {
+            double at[3];
+            for (int a = 0; a < 3; a++)
+                at[a] = points[3 * (size_t)soup->corner_point[first + i] + (size_t)a] / step;
+            for (int a = 0; a < 3; a++) way[a] = at[a] - from[a];
+            if (pass == 1) leave_edge(at, from, to, way);
+            double length = sqrt(dot(way, way));
+            if (pass == 1 && length > reach) return false;
+            if (pass == 1 || length <= longest) continue;
+            longest = length;
+            memcpy(to, at, sizeof to);
+        }
+    }
+    return true;
+}
+
 void enf_stress_ask_surfaces(enf_stress_case *made, const enf_file_view *view, int count,
                              enf_stress_verdict *verdict) {
     const enf_soup *soup = &made->soup;
@@ -273,9 +295,10 @@ void enf_stress_ask_surfaces(enf_stress_case *made, const enf_file_view *view, i
         double world[3], grid[3];
         enf_stress_pick_point(made, soup->points, soup->corner_point + first, (int32_t)corners, world);
         enf_view_to_grid(view, world, grid);
-        verdict->surfaces++;
         double reach =
             enf_stress_margin(view) / frame->step + 4 * unevenness(soup, first, corners, frame->step);
+        if (is_needle(soup, first, corners, frame->step, reach)) continue; // all of it is an edge
+        verdict->surfaces++;
         if (!is_near_mesh(view, grid, reach))
             enf_stress_disagree(verdict, "no clean polygon is near %.17g %.17g %.17g of input polygon %zu",
                                 world[0], world[1], world[2], p);

@@ -148,9 +148,41 @@ static void search(query *query) {
     }
 }
 
+static double distance_to_segment(const double point[3], const double from[3], const double to[3]) {
+    double along[3], off[3], length = 0, share = 0, square = 0;
+    for (int a = 0; a < 3; a++) {
+        along[a] = to[a] - from[a];
+        off[a] = point[a] - from[a];
+        length += along[a] * along[a];
+        share += along[a] * off[a];
+    }
+    share = length > 0 ? fmax(0, fmin(share / length, 1)) : 0;
+    for (int a = 0; a < 3; a++) square += (off[a] - share * along[a]) * (off[a] - share * along[a]);
+    return sqrt(square);
+}
+
+/// The point is at least so far from a tetrahedron, by its longest edge and how far the others reach from it.
+/// For needles, whose rounded faces may face anywhere.
+static double needle_distance(const query *query, int32_t tetrahedron) {
+    double corner[4][3], longest = -1, width = 0;
+    int from = 0, to = 0;
+    for (int k = 0; k < 4; k++) load_point(query, query->view->tetrahedra[tetrahedron][k], corner[k]);
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < i; k++) {
+            double length = distance_to_segment(corner[i], corner[k], corner[k]);
+            if (length <= longest) continue;
+            longest = length;
+            from = i;
+            to = k;
+        }
+    }
+    for (int k = 0; k < 4; k++) width = fmax(width, distance_to_segment(corner[k], corner[from], corner[to]));
+    return distance_to_segment(query->at, corner[from], corner[to]) - width;
+}
+
 /// How far (grid steps, rounded) the point lies outside the tetrahedron, by the face that is violated most.
 static double outside_distance(const query *query, int32_t tetrahedron) {
-    double most = 0;
+    double most = fmax(0, needle_distance(query, tetrahedron));
     for (int face = 0; face < 4; face++) {
         double corner[3][3], normal[3];
         for (int k = 0; k < 3; k++)
