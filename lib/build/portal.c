@@ -445,7 +445,8 @@ static bool collect_gaps(const enf_complex *complex, const int32_t *cell_of, gap
     return true;
 }
 
-/// The geometry of the finished complex once more: planes with filters, crossings as they are needed.
+/// The geometry of the finished complex once more: planes, whose filters are made when they are asked for
+/// (most never are), and crossings as they are needed.
 static bool set_up(finder *f, const enf_complex *complex) {
     size_t crossings = (size_t)(complex->vertex_count - complex->point_count);
     f->complex = complex;
@@ -454,10 +455,9 @@ static bool set_up(finder *f, const enf_complex *complex) {
     geometry->point_count = complex->point_count;
     geometry->planes = complex->planes;
     geometry->plane_count = complex->plane_count;
-    geometry->filters = enf_array_new((size_t)complex->plane_count, sizeof *geometry->filters);
+    geometry->filter_first = geometry->filter_end = complex->plane_count;
     f->pool_vertex = enf_array_new(crossings, sizeof *f->pool_vertex);
-    if (!geometry->filters || !f->pool_vertex) return false;
-    for (int32_t p = 0; p < complex->plane_count; p++) enf_geometry_set_plane(geometry, p);
+    if (!f->pool_vertex) return false;
     for (size_t i = 0; i < crossings; i++) f->pool_vertex[i] = -1;
     return true;
 }
@@ -478,7 +478,6 @@ enf_status enf_portals_find(enf_portals *portals, const enf_complex *complex, co
         good = find_between(&f, gaps + i, end - i);
     }
     free(gaps);
-    free(f.pool.geometry.filters);
     enf_pool_free(&f.pool);
     free(f.pool_vertex);
     free(f.complex_vertex);

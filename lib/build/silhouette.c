@@ -17,8 +17,8 @@
 #include "base/array.h"
 
 /// Only the time depends on these: edges in a block that is halved, how often, and bands per square root of
-/// the edges.
-enum { LARGE_BLOCK = 24, MOST_HALVINGS = 12, BAND_DIVISOR = 2 };
+/// the edges; moves of a sort by insertion before qsort takes over.
+enum { LARGE_BLOCK = 24, MOST_HALVINGS = 12, BAND_DIVISOR = 2, MOVES_PER_ELEMENT = 16 };
 
 typedef struct enf_slab_edge {
     double left, right; ///< height at the borders of the slab
@@ -79,6 +79,37 @@ static int compare_turns(const void *first, const void *second) {
     return order ? order : (a->change > b->change) - (a->change < b->change);
 }
 
+/// Sorts by insertion: most lists are short, or nearly sorted. What takes too many moves goes to qsort; equal
+/// elements are equal to the last bit, so the result is the same.
+#define DEFINE_SORT(name, type, is_less, compare)                                               \
+    static void name(type *list, size_t count) {                                                \
+        size_t moves = 0, allowed = MOVES_PER_ELEMENT * count;                                  \
+        for (size_t i = 1; i < count && moves <= allowed; ++i) {                                \
+            if (!is_less(&list[i], &list[i - 1])) continue;                                     \
+            type moved = list[i];                                                               \
+            size_t j = i;                                                                       \
+            for (; j > 0 && is_less(&moved, &list[j - 1]); --j, ++moves) list[j] = list[j - 1]; \
+            list[j] = moved;                                                                    \
+        }                                                                                       \
+        if (moves > allowed) qsort(list, count, sizeof *list, compare);                         \
+    }
+
+static inline bool edge_less(const enf_contour_edge *a, const enf_contour_edge *b) {
+    return a->x0 != b->x0 ? a->x0 < b->x0 : compare_edges(a, b) < 0;
+}
+
+static inline bool event_less(const double *a, const double *b) {
+    return *a < *b;
+}
+
+static inline bool turn_less(const enf_border_turn *a, const enf_border_turn *b) {
+    return a->x != b->x ? a->x < b->x : a->change < b->change;
+}
+
+DEFINE_SORT(sort_contour, enf_contour_edge, edge_less, compare_edges)
+DEFINE_SORT(sort_events, double, event_less, compare_events)
+DEFINE_SORT(sort_turns, enf_border_turn, turn_less, compare_turns)
+
 /// Sorts the edges, drops those with an end that is no number, and finds how high the figure reaches.
 static void prepare(enf_silhouette *work, double *low, double *high) {
     size_t kept = 0;
@@ -94,7 +125,7 @@ static void prepare(enf_silhouette *work, double *low, double *high) {
         work->edges[kept++] = *edge;
     }
     work->edge_count = kept;
-    if (kept > 0) qsort(work->edges, kept, sizeof *work->edges, compare_edges);
+    sort_contour(work->edges, kept);
 }
 
 /// Where an edge crosses the height y.
@@ -136,9 +167,9 @@ static bool fill_band(enf_silhouette *work, double low, double high, size_t *eve
     }
     *event_count = 0;
     if (events == 0) return true;
-    qsort(work->parts, work->part_count, sizeof *work->parts, compare_edges);
-    qsort(work->turns, work->turn_count, sizeof *work->turns, compare_turns);
-    qsort(work->events, events, sizeof *work->events, compare_events);
+    sort_contour(work->parts, work->part_count);
+    sort_turns(work->turns, work->turn_count);
+    sort_events(work->events, events);
     for (size_t i = 0; i < events; ++i)
         if (*event_count == 0 || work->events[i] != work->events[*event_count - 1])
             work->events[(*event_count)++] = work->events[i];
@@ -196,7 +227,7 @@ static bool collect_crossings(enf_silhouette *work, const slab_edge *block, size
         }
     if (!enf_array_reserve(work->crossings, work->crossing_capacity, found + 1)) return false;
     work->crossings[found++] = 1;
-    qsort(work->crossings, found, sizeof *work->crossings, compare_events);
+    sort_events(work->crossings, found);
     *crossing_count = found;
     return true;
 }

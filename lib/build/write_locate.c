@@ -10,62 +10,87 @@
 #include <math.h>
 #include <stdlib.h>
 
+/// A face of a tetrahedron, less its smallest corner.
 typedef struct face_key {
-    int32_t corner[3]; ///< ascending
+    int32_t corner[2]; ///< the others, ascending
     int32_t face;      ///< 4 * tetrahedron + the opposite corner
 } face_key;
 
-static void sort_three(int32_t v[3]) {
-    for (int i = 0; i < 2; i++) {
-        for (int k = 0; k < 2 - i; k++) {
-            if (v[k] <= v[k + 1]) continue;
-            int32_t swap = v[k];
-            v[k] = v[k + 1];
-            v[k + 1] = swap;
-        }
+/// The corners of a face, ascending.
+static void take_face(const enf_file_view *view, int32_t face, int32_t corner[3]) {
+    const int32_t *corners = view->tetrahedra[face / 4];
+    for (int k = 0, n = 0; k < 4; k++) {
+        if (k == face % 4) continue;
+        int i = n++;
+        for (; i > 0 && corner[i - 1] > corners[k]; i--) corner[i] = corner[i - 1];
+        corner[i] = corners[k];
     }
 }
 
 static int compare_keys(const void *a, const void *b) {
     const face_key *p = a, *q = b;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 2; k++) {
         if (p->corner[k] != q->corner[k]) return p->corner[k] < q->corner[k] ? -1 : 1;
     }
     return (p->face > q->face) - (p->face < q->face);
 }
 
-static bool same_face(const face_key *a, const face_key *b) {
-    return a->corner[0] == b->corner[0] && a->corner[1] == b->corner[1] && a->corner[2] == b->corner[2];
+/// All faces in lists by their smallest corner: *first (a place per point and one more) and *faces, both to
+/// be freed. False without memory.
+static bool list_faces(const enf_file_view *view, int32_t **first, int32_t **faces) {
+    int32_t count = 4 * view->tetrahedron_count, corner[3];
+    *first = enf_array_zeroed((size_t)view->point_count + 2, sizeof **first);
+    *faces = enf_array_new((size_t)count, sizeof **faces);
+    if (!*first || !*faces) return false;
+    int32_t *place = *first + 1; // shifted by one while filling
+    for (int32_t i = 0; i < count; i++) {
+        take_face(view, i, corner);
+        place[corner[0] + 1]++;
+    }
+    for (int32_t p = 0; p < view->point_count; p++) place[p + 1] += place[p];
+    for (int32_t i = 0; i < count; i++) {
+        take_face(view, i, corner);
+        (*faces)[place[corner[0]]++] = i;
+    }
+    return true;
+}
+
+/// Pairs the faces of one list.
+static void pair_faces(const enf_file_view *view, const int32_t *faces, size_t count, face_key *keys,
+                       int32_t (*next)[4]) {
+    for (size_t i = 0; i < count; i++) {
+        int32_t corner[3];
+        take_face(view, faces[i], corner);
+        keys[i] = (face_key){{corner[1], corner[2]}, faces[i]};
+    }
+    qsort(keys, count, sizeof *keys, compare_keys);
+    for (size_t i = 1; i < count; i++) {
+        const face_key *p = &keys[i - 1], *q = &keys[i];
+        if (p->corner[0] != q->corner[0] || p->corner[1] != q->corner[1]) continue;
+        next[p->face / 4][p->face % 4] = q->face / 4;
+        next[q->face / 4][q->face % 4] = p->face / 4;
+    }
 }
 
 /// Pairs the faces with the same three corners.
 static enf_status make_neighbours(enf_image *image, enf_error *error) {
     enf_file_view *view = &image->view;
-    size_t count = (size_t)view->tetrahedron_count;
+    size_t count = (size_t)view->tetrahedron_count, capacity = 0;
     if (count > INT32_MAX / 4) return enf_fail(error, ENF_NO_RESOURCES, "too many tetrahedra for one file");
     int32_t(*next)[4] = enf_image_new(image, count, sizeof *next);
-    face_key *keys = enf_array_new(4 * count, sizeof *keys);
-    if (!next || !keys) {
-        free(keys);
-        return enf_fail_memory(error, "the neighbours of tetrahedra");
+    int32_t *first = NULL, *faces = NULL;
+    face_key *keys = NULL;
+    bool good = next && list_faces(view, &first, &faces);
+    for (size_t i = 0; good && i < count; i++) next[i][0] = next[i][1] = next[i][2] = next[i][3] = -1;
+    for (int32_t p = 0; good && p < view->point_count; p++) {
+        size_t many = (size_t)(first[p + 1] - first[p]);
+        good = enf_array_reserve(keys, capacity, many);
+        if (good && many > 1) pair_faces(view, faces + first[p], many, keys, next);
     }
-    for (size_t i = 0; i < 4 * count; i++) {
-        const int32_t *corners = view->tetrahedra[i / 4];
-        for (int k = 0, n = 0; k < 4; k++) {
-            if (k != (int)(i % 4)) keys[i].corner[n++] = corners[k];
-        }
-        sort_three(keys[i].corner);
-        keys[i].face = (int32_t)i;
-        next[i / 4][i % 4] = -1;
-    }
-    qsort(keys, 4 * count, sizeof *keys, compare_keys);
-    for (size_t i = 1; i < 4 * count; i++) {
-        if (!same_face(&keys[i - 1], &keys[i])) continue;
-        int32_t a = keys[i - 1].face, b = keys[i].face;
-        next[a / 4][a % 4] = b / 4;
-        next[b / 4][b % 4] = a / 4;
-    }
+    free(first);
+    free(faces);
     free(keys);
+    if (!good) return enf_fail_memory(error, "the neighbours of tetrahedra");
     view->tetrahedron_next = (void *)next;
     return ENF_OK;
 }
