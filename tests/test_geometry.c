@@ -239,40 +239,6 @@ static void side_of_a_plane_is_right(void **unused) {
                 exact > cases / 20); // the cases are as hard as they are meant to be
 }
 
-static void shared_crossings_are_the_same_as_own_ones(void **unused) {
-    (void)unused;
-    uint64_t state = seed + 2;
-    for (long i = 0; i < scaled(500); i++) {
-        scene s;
-        if (!make_scene(&s, (int)(i % SCENE_KINDS), &state)) continue;
-        int32_t vertex;
-        for (int k = 0; k < CROSSINGS; k++) {
-            if (!random_crossing(&s, &s.geometry, &state, &vertex)) break;
-        }
-        enf_geometry other = s.geometry;
-        other.shared = s.geometry.crossings;
-        other.shared_count = s.geometry.crossing_count;
-        other.crossings = NULL;
-        other.crossing_count = 0;
-        other.crossing_capacity = 0;
-        int32_t own;
-        if (random_crossing(&s, &other, &state, &own)) {
-            assert_int_equal(own, POINTS + other.shared_count);
-            for (vertex = 0; vertex <= own; vertex++) {
-                oracle_corner corner = describe_vertex(&s, &other, vertex);
-                int expected[PLANES];
-                oracle_plane planes[PLANES];
-                describe_planes(&s, planes);
-                oracle_sides(&corner, planes, PLANES, expected);
-                for (int32_t p = 0; p < PLANES; p++)
-                    assert_int_equal(enf_geometry_side(&other, vertex, p), expected[p]);
-            }
-        }
-        free(other.crossings);
-        free(s.geometry.crossings);
-    }
-}
-
 /// A quarter of a grid step for what the filter lets pass, and a few roundings to double.
 static double position_bound(const double position[3]) {
     double size = fmax(fabs(position[0]), fmax(fabs(position[1]), fabs(position[2])));
@@ -478,7 +444,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(orientation_of_four_points_is_right),
         cmocka_unit_test(side_of_a_plane_is_right),
-        cmocka_unit_test(shared_crossings_are_the_same_as_own_ones),
         cmocka_unit_test(positions_are_close_to_the_crossing),
         cmocka_unit_test(dominant_axis_and_facing_are_right),
         cmocka_unit_test(cutting_a_loop_loses_no_area),

@@ -285,7 +285,7 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
         weight_of(&weight, plane);
         crossing->weight_sign = weight.sign;
     }
-    return geometry->point_count + geometry->shared_count + geometry->crossing_count++;
+    return geometry->point_count + geometry->crossing_count++;
 }
 
 // ---------------------------------------------------------------------------------------------- the
@@ -336,9 +336,7 @@ static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t p
 }
 
 const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t vertex) {
-    int32_t i = vertex - geometry->point_count;
-    return i < geometry->shared_count ? &geometry->shared[i]
-                                      : &geometry->crossings[i - geometry->shared_count];
+    return &geometry->crossings[vertex - geometry->point_count];
 }
 
 /// How many of the points that define `plane` also define both a and b.

@@ -30,9 +30,7 @@ typedef struct enf_crossing {
     double at_unit, weight_unit;   ///< powers of two that divide the true values
 } enf_crossing;
 
-/// Vertices are numbered: points, then the shared crossings, then the geometry's own crossings. Points,
-/// planes and shared crossings are fixed while own ones are made, so each thread can have a geometry that
-/// shares the former.
+/// Vertices are numbered: points, then crossings.
 typedef struct enf_geometry {
     int32_t point_count;
     const double *points; ///< xyz
@@ -43,9 +41,7 @@ typedef struct enf_geometry {
     enf_plane_filter *filters;
     int32_t filter_first, filter_end;
 
-    const enf_crossing *shared; ///< vertex point_count + i; may be null
-    int32_t shared_count;
-    enf_crossing *crossings; ///< vertex point_count + shared_count + i
+    enf_crossing *crossings; ///< vertex point_count + i
     int32_t crossing_count;
     size_t crossing_capacity;
 
@@ -94,13 +90,11 @@ bool enf_geometry_same_way(const enf_geometry *geometry, int32_t a, int32_t b);
 /// The same from the filter alone: quick, for measuring, where a crossing of nearly parallel planes may be
 /// far off.
 static inline void enf_geometry_near(const enf_geometry *geometry, int32_t vertex, double position[3]) {
-    int32_t own = vertex - geometry->point_count - geometry->shared_count;
     if (vertex < geometry->point_count) {
         for (int i = 0; i < 3; i++) position[i] = geometry->points[3 * (size_t)vertex + (size_t)i];
         return;
     }
-    const enf_crossing *crossing =
-        own < 0 ? &geometry->shared[own + geometry->shared_count] : &geometry->crossings[own];
+    const enf_crossing *crossing = &geometry->crossings[vertex - geometry->point_count];
     for (int i = 0; i < 3; i++) position[i] = crossing->at[i] / crossing->weight;
 }
 
