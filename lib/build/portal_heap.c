@@ -175,9 +175,9 @@ static void join_pieces(enf_portal_heap *portals, enf_portal *portal, const enf_
         portals->piece_next[portal->last_piece] = other->first_piece;
     portal->last_piece = other->last_piece;
     int32_t a = portal->largest_piece, b = other->largest_piece;
-    double area_a = a < 0 ? -1 : enf_surface_piece_area(&portals->surface, a);
+    double area_a = a < 0 ? 0 : enf_surface_piece_area(&portals->surface, a);
     double area_b = enf_surface_piece_area(&portals->surface, b);
-    if (area_b > area_a || (area_b == area_a && b < a)) portal->largest_piece = b;
+    if (a < 0 || area_b > area_a || (area_b == area_a && b < a)) portal->largest_piece = b;
     portal->area += other->area;
     for (int k = 0; k < 3; ++k) portal->sum[k] += sign * other->sum[k];
 }
