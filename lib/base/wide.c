@@ -102,26 +102,27 @@ void enf_wide_subtract(enf_wide *result, const enf_wide *a, const enf_wide *b) {
 }
 
 void enf_wide_multiply(enf_wide *result, const enf_wide *a, const enf_wide *b) {
+    const int a_size = a->size, b_size = b->size;
     result->sign = a->sign * b->sign;
     result->size = 0;
-    if (result->sign == 0) return;
+    if (result->sign == 0 || a_size < 1 || b_size < 1) return; // no number other than 0 has no limbs
     uint64_t limb[2 * ENF_WIDE_LIMBS], carry = 0;
-    for (int j = 0; j < b->size; j++) {
+    for (int j = 0; j < b_size; j++) {
         enf_uint128 sum = (enf_uint128)a->limb[0] * b->limb[j] + carry;
         limb[j] = (uint64_t)sum;
         carry = (uint64_t)(sum >> 64);
     }
-    limb[b->size] = carry;
-    for (int i = 1; i < a->size; i++) {
+    limb[b_size] = carry;
+    for (int i = 1; i < a_size; i++) {
         carry = 0;
-        for (int j = 0; j < b->size; j++) {
+        for (int j = 0; j < b_size; j++) {
             enf_uint128 sum = (enf_uint128)a->limb[i] * b->limb[j] + limb[i + j] + carry;
             limb[i + j] = (uint64_t)sum;
             carry = (uint64_t)(sum >> 64);
         }
-        limb[i + b->size] = carry;
+        limb[i + b_size] = carry;
     }
-    int size = a->size + b->size;
+    int size = a_size + b_size;
     size -= limb[size - 1] == 0; // the highest limbs of the factors are not 0
     assert(size <= ENF_WIDE_LIMBS);
     for (int i = 0; i < size; i++) result->limb[i] = limb[i];
