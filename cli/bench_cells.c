@@ -171,8 +171,7 @@ int cli_bench_cells(int argc, char **argv) {
         .user = &table, .work = work, .row_size = sizeof(row), .print = print_row, .print_head = print_head};
     cli_option options[] = {
         {"--runs", 0, CLI_COUNT, &table.runs, "N", "medians over so many runs; default 5", NULL, false},
-        {"--levels", 0, CLI_TEXT, &folder.pattern, "GLOB", "only levels whose name (less .obj.gz) matches",
-         NULL, false},
+        CLI_LEVELS_OPTION(folder),
         {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench cells",

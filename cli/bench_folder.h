@@ -19,6 +19,13 @@ typedef struct cli_folder {
     void (*print_head)(void *user); ///< before the first level
 } cli_folder;
 
+/// The option --levels; cli/options.h has the type.
+#define CLI_LEVELS_OPTION(folder)                                                                            \
+    {                                                                                                        \
+        "--levels", 0, CLI_TEXT, &(folder).pattern, "GLOB", "only levels whose name (less .obj.gz) matches", \
+            NULL, false                                                                                      \
+    }
+
 /// Returns the worst exit status.
 int cli_folder_visit(const cli_folder *folder);
 

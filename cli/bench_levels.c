@@ -93,8 +93,7 @@ int cli_bench_levels(int argc, char **argv) {
     cli_folder folder = {.user = &request, .work = compile_level, .print_head = print_head};
     cli_option options[] = {
         {"--check", 0, CLI_FLAG, &request.check, NULL, "check every invariant of each result", NULL, false},
-        {"--levels", 0, CLI_TEXT, &folder.pattern, "GLOB", "only levels whose name (less .obj.gz) matches",
-         NULL, false},
+        CLI_LEVELS_OPTION(folder),
         CLI_SETTINGS_OPTIONS(request.settings),
         {0}};
     const cli_syntax syntax = {

@@ -93,10 +93,7 @@ int cli_bench_memory(int argc, char **argv) {
                          .row_size = sizeof(row),
                          .print = print_row,
                          .print_head = print_head};
-    cli_option options[] = {{"--levels", 0, CLI_TEXT, &folder.pattern, "GLOB",
-                             "only worlds whose name (less .obj.gz) matches", NULL, false},
-                            CLI_SETTINGS_OPTIONS(table.settings),
-                            {0}};
+    cli_option options[] = {CLI_LEVELS_OPTION(folder), CLI_SETTINGS_OPTIONS(table.settings), {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench memory",
         .usage = "DIR [--levels GLOB] [options of compile]",

@@ -183,8 +183,7 @@ int cli_bench_solid(int argc, char **argv) {
                             {"--margin", 0, CLI_LENGTH, &request.margin, "D",
                              "points nearer than D to a brush's surface are not asked; default 0.00001", NULL,
                              false},
-                            {"--levels", 0, CLI_TEXT, &folder.pattern, "GLOB",
-                             "only levels whose name (less .obj.gz) matches", NULL, false},
+                            CLI_LEVELS_OPTION(folder),
                             {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench solid",

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The soups that others choke on.
-#include "build/stress_hard.h"
-#include "build/stress_run.h"
 #include "cli/bench.h"
 #include "cli/bench_child.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "stress/stress_hard.h"
+#include "stress/stress_run.h"
 
 #include <inttypes.h>
 #include <math.h>

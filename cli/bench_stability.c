@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Families of random soups: nothing may fail.
 #include "base/array.h"
-#include "build/stress_family.h"
-#include "build/stress_run.h"
 #include "cli/bench.h"
 #include "cli/bench_child.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "stress/stress_family.h"
+#include "stress/stress_run.h"
 
 #include <errno.h>
 #include <inttypes.h>

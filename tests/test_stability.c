@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Soups as bad as they come: the families of `enfilade bench stability`, a few seeds each. Every invariant is
 // checked exactly, and the oracles are asked. ENFILADE_TEST_SCALE multiplies the number of seeds.
-#include "build/stress_family.h"
-#include "build/stress_hard.h"
-#include "build/stress_run.h"
 #include "build/write.h"
+#include "stress/stress_family.h"
+#include "stress/stress_hard.h"
+#include "stress/stress_run.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

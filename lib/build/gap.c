@@ -52,10 +52,13 @@ static void add_facet(const enf_complex *complex, sizes *s, int32_t facet) {
     }
 }
 
+#define ROUNDING_ROOM 1.001   ///< these sums and those of enf_complex_measure_cell differ by less
+#define WORLD_DIAGONAL 0x1p55 ///< grid steps, and more: coordinates are below 2^53
+
 /// May the cell be thinner than `crack`, as far as its volume and surface tell? A needle may be as long as
-/// the world.
+/// the world. Cells that may be are measured properly: enf_body_is_hairline decides.
 static bool may_be_thin(double volume, double surface, double crack) {
-    return 2 * volume <= 1.001 * crack * surface || surface <= crack * 0x1p55;
+    return 2 * volume <= ROUNDING_ROOM * crack * surface || surface <= crack * WORLD_DIAGONAL;
 }
 
 static bool find_thin(const enf_complex *complex, double crack, const uint8_t *wall, bool *gap) {

@@ -11,8 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Cells are joined where the opening between them is at least this share of either's shadow on it: the least
-/// that joins most parts of cut tetrahedra and leaves the thesis's rooms apart.
+/// Cells are joined where the opening between them is at least this share of either's shadow on it: a
+/// narrower one may be a door, and decimation weighs those. A half would leave about 8 % more cells on real
+/// levels.
 #define OPENING_MIN 0.25
 
 static int32_t apex(const enf_tet_mesh *tets, int32_t t, int32_t facet) {

@@ -263,6 +263,8 @@ static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t 
 
 enum { WATCH_EVERY = 512 };
 
+#define FLOOD_SHARE 0.3 ///< of the stage's time, about: only the progress bar sees it
+
 /// The watch sees one stage where there are two.
 typedef struct half_watch {
     const enf_crew *crew;
@@ -393,10 +395,10 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     memset(complex, 0, sizeof *complex);
     cutter c = {.arrangement = arrangement, .space = &arrangement->subdivision};
     enf_candidates candidates;
-    half_watch half = {.crew = crew, .share = 0.3};
+    half_watch half = {.crew = crew, .share = FLOOD_SHARE};
     enf_crew watched = {.threads = crew->threads, .watch = watch_half, .user = &half};
     bool stopped, good = enf_candidates_find(&candidates, arrangement, &watched, &stopped);
-    half = (half_watch){.crew = crew, .begun = 0.3, .share = 0.7};
+    half = (half_watch){.crew = crew, .begun = FLOOD_SHARE, .share = 1 - FLOOD_SHARE};
     uint8_t *marked = good ? mark_facets(arrangement, &candidates) : NULL;
     good = marked && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets, marked,
                                            (size_t)candidates.offset[arrangement->tets.count]);

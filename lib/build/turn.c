@@ -26,11 +26,14 @@ enum { CLUSTERS = 64, REFINE_ROUNDS = 20, REFINE_MOST = 16384 };
 
 static const double same_direction = 1 / 64.0; ///< sine of the angle
 static const double first_slope = 1 / 32.0;    ///< how far from square a polygon may be in the first round
-static const double aligned_enough = 0.5;      ///< of the area: no search
-static const double aligned_twice = 1 / 16.0;  ///< of it along a second axis, too
-static const double worth_turning = 0.25;      ///< of the area must become axis-parallel...
-static const double better_by = 1.25;          ///< ... and so many times what is
-static const double thickness = 32;            ///< a flat polygon is wider than this many reaches
+static const double least_slope = 1e-12;       ///< then all rounds ask for squareness as good as it gets
+static const double least_determinant =
+    1e-9; ///< of the product of the diagonal: less, and a rotation is left open
+static const double aligned_enough = 0.5;     ///< of the area: no search
+static const double aligned_twice = 1 / 16.0; ///< of it along a second axis, too
+static const double worth_turning = 0.25;     ///< of the area must become axis-parallel...
+static const double better_by = 1.25;         ///< ... and so many times what is
+static const double thickness = 32;           ///< a flat polygon is wider than this many reaches
 
 typedef struct facing {
     double normal[3], area;
@@ -304,7 +307,7 @@ static bool solve(double m[3][3], const double right[3], double w[3]) {
         for (int j = 0; j < 3; j++) column[j][i] = m[i][j];
     cross(column[1], column[2], n);
     double determinant = dot(column[0], n);
-    if (!(determinant > 1e-9 * m[0][0] * m[1][1] * m[2][2])) return false;
+    if (!(determinant > least_determinant * m[0][0] * m[1][1] * m[2][2])) return false;
     for (int j = 0; j < 3; j++) {
         cross(column[(j + 1) % 3], column[(j + 2) % 3], n);
         w[j] = dot(right, n) / determinant;
@@ -335,7 +338,7 @@ static bool find_axes(seeker *s) {
     int count = cluster_directions(s, directions);
     if (!guess_axes(s, directions, count) || !square_axes(s->axes)) return false;
     double slope = first_slope;
-    for (int round = 0; round<REFINE_ROUNDS; round++, slope = slope> 1e-12 ? slope / 8 : 0)
+    for (int round = 0; round<REFINE_ROUNDS; round++, slope = slope> least_slope ? slope / 8 : 0)
         if (!refine_once(s, slope)) return false;
     return true;
 }

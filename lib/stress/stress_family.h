@@ -3,7 +3,7 @@
 #ifndef ENF_BUILD_STRESS_FAMILY_H
 #define ENF_BUILD_STRESS_FAMILY_H
 
-#include "build/stress_case.h"
+#include "stress/stress_case.h"
 
 /// The name of family number `index`, or null after the last. *description (if not null) gets one line on it.
 const char *enf_stress_family(int index, const char **description);

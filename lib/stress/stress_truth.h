@@ -4,8 +4,8 @@
 #ifndef ENF_BUILD_STRESS_TRUTH_H
 #define ENF_BUILD_STRESS_TRUTH_H
 
-#include "build/stress_case.h"
 #include "enfilade/format.h"
+#include "stress/stress_case.h"
 
 /// What the oracles asked and found.
 typedef struct enf_stress_verdict {

@@ -3,14 +3,14 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE // asprintf
 #endif
-#include "build/stress_run.h"
+#include "stress/stress_run.h"
 
 #include "base/array.h"
 #include "build/check.h"
-#include "build/stress_family.h"
 #include "build/write.h"
 #include "format/read.h"
 #include "format/save.h"
+#include "stress/stress_family.h"
 
 #include <stdio.h>
 #include <stdlib.h>

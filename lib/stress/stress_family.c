@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One function per family. Every third seed compiles without welding where the soup is closed to the last
 // bit.
-#include "build/stress_family.h"
+#include "stress/stress_family.h"
 
 #include "base/hash.h"
 #include "build/gen_world.h"

@@ -4,7 +4,7 @@
 #define ENF_BUILD_STRESS_RUN_H
 
 #include "build/build.h"
-#include "build/stress_truth.h"
+#include "stress/stress_truth.h"
 
 /// How a run ended.
 typedef enum enf_stress_outcome {

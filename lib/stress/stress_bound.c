@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where three polygons cross: for every pair the segment that they share, cut by all later polygons.
-#include "build/stress_hard.h"
+#include "stress/stress_hard.h"
 
 #include "base/array.h"
 

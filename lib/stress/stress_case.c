@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "build/stress_case.h"
+#include "stress/stress_case.h"
 
 #include "base/array.h"
 #include "build/gen_world.h"

@@ -4,7 +4,7 @@
 // for only where the distance to every face is more than 2^-36 of it: there the answer is that of exact
 // arithmetic. Shells: solid angles (A. van Oosterom, J. Strackee, "The solid angle of a plane triangle",
 // 1983).
-#include "build/stress_truth.h"
+#include "stress/stress_truth.h"
 
 #include "format/locate.h"
 

@@ -3,7 +3,7 @@
 #ifndef ENF_BUILD_STRESS_HARD_H
 #define ENF_BUILD_STRESS_HARD_H
 
-#include "build/stress_case.h"
+#include "stress/stress_case.h"
 
 typedef struct enf_stress_hard {
     const char *name, *description;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What lies between two points, in whole numbers (GMP), and which polygons of the input are there at all.
-#include "build/stress_truth.h"
+#include "stress/stress_truth.h"
 
 #include "base/array.h"
 #include "format/frame.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The soups, one function per kind.
-#include "build/stress_hard.h"
+#include "stress/stress_hard.h"
 
 #include "base/hash.h"
 #include "build/gen_world.h"
