@@ -25,8 +25,8 @@ static void *work(void *argument) {
     worker *me = argument;
     shift *all = me->shift;
     const enf_crew *crew = all->crew;
-    while (!atomic_load(&all->stopped)) {
-        int index = atomic_fetch_add(&all->next, 1);
+    for (bool first = me->thread == 0; !atomic_load(&all->stopped); first = false) {
+        int index = first ? 0 : atomic_fetch_add(&all->next, 1);
         if (index >= all->count) break;
         if (me->thread == 0 && crew->watch && !crew->watch(crew->user, (double)index / all->count)) {
             atomic_store(&all->stopped, true);
@@ -39,7 +39,7 @@ static void *work(void *argument) {
 
 bool enf_parallel_for(const enf_crew *crew, int32_t count, void (*job)(void *user, int32_t index, int thread),
                       void *user) {
-    shift all = {.crew = crew, .job = job, .user = user, .count = count};
+    shift all = {.crew = crew, .job = job, .user = user, .count = count, .next = 1};
     worker workers[THREADS_MAX];
     int threads = crew->threads < THREADS_MAX ? crew->threads : THREADS_MAX, started = 1;
     if (threads > count) threads = count;

@@ -16,8 +16,8 @@ typedef struct enf_crew {
 } enf_crew;
 
 /// Calls job(user, i, thread) once for each i in 0..count-1, on up to crew->threads threads (thread numbers
-/// from 0; the caller's own is 0). Falls back to fewer threads where the system refuses them. Returns when
-/// all are done; false if the watch stopped them.
+/// from 0; the caller's own is 0, and takes job 0). Falls back to fewer threads where the system refuses
+/// them. Returns when all are done; false if the watch stopped them.
 bool enf_parallel_for(const enf_crew *crew, int32_t count, void (*job)(void *user, int32_t index, int thread),
                       void *user);
 

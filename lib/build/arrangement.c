@@ -11,8 +11,8 @@ void enf_arrangement_free(enf_arrangement *arrangement) {
     free(arrangement->geometry.filters);
     free(arrangement->polygon_plane);
     free(arrangement->polygon_flipped);
-    enf_subdivision_free(&arrangement->subdivision);
     free(arrangement->cell_into);
+    free(arrangement->hit_first);
     free(arrangement->hits);
     memset(arrangement, 0, sizeof *arrangement);
 }

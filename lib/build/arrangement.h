@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 #include "build/clean.h"
 #include "build/geometry.h"
-#include "build/subdivision.h"
 #include "build/tetrahedra.h"
 
 /// A polygon may lie on facets of this source (see enf_share).
@@ -28,11 +27,10 @@ typedef struct enf_arrangement {
     int32_t *polygon_plane;   ///< per polygon
     bool *polygon_flipped;    ///< the polygon's front is the plane's back
 
-    enf_subdivision subdivision; ///< from split to connect; its geometry has the planes above
-    int32_t *cell_into;          ///< from split to connect: the cell that each cell went into, or itself
-    bool plain;                  ///< cells are not joined
-    enf_hit *hits;               ///< on facets of the tetrahedra
-    size_t hit_count, hit_capacity;
+    bool plain;         ///< cells are not joined
+    int32_t *hit_first; ///< per facet of the tetrahedra, offsets into `hits`; from flood on
+    enf_hit *hits;
+    int32_t *cell_into; ///< from split to connect: the cell that each cell went into, or itself
 } enf_arrangement;
 
 void enf_arrangement_free(enf_arrangement *arrangement);

@@ -21,9 +21,8 @@ static void number_cells(int32_t *into, size_t count) {
 }
 
 static void renumber_cells(enf_complex *complex, enf_arrangement *arrangement) {
-    enf_subdivision *space = &arrangement->subdivision;
     const int32_t *number = arrangement->cell_into;
-    number_cells(arrangement->cell_into, space->cell_count);
+    number_cells(arrangement->cell_into, (size_t)complex->cell_count + (size_t)complex->cells_joined);
     for (int32_t f = 0; f < complex->facet_count; f++) {
         for (int side = 0; side < 2; side++) {
             int32_t *cell = &complex->facet_cell[f][side];
@@ -31,12 +30,12 @@ static void renumber_cells(enf_complex *complex, enf_arrangement *arrangement) {
         }
     }
     for (int32_t t = 0; t < complex->tetrahedron_count; t++) {
-        int32_t *root = &space->tetrahedron_root[t];
+        int32_t *root = &complex->tetrahedron_root[t];
         if (*root < 0) *root = -1 - number[-1 - *root];
     }
     for (int32_t n = 0; n < complex->node_count; n++) {
         for (int k = 0; k < 2; k++) {
-            int32_t *child = &space->node_child[n][k];
+            int32_t *child = &complex->node_child[n][k];
             if (*child < 0) *child = -1 - number[-1 - *child];
         }
     }
@@ -123,67 +122,16 @@ static bool make_sights(enf_complex *complex) {
     return true;
 }
 
-// ---------------------------------------------------------------------------------------------- vertices
-
-static void mark_vertices(const enf_loops *loops, int32_t point_count, int32_t *number) {
-    for (size_t i = 0; i < loops->corner_count; i++) {
-        if (loops->corners[i].vertex >= point_count) number[loops->corners[i].vertex - point_count] = 1;
-    }
-}
-
-static void renumber_vertices(enf_loops *loops, int32_t point_count, const int32_t *number) {
-    for (size_t i = 0; i < loops->corner_count; i++) {
-        int32_t *vertex = &loops->corners[i].vertex;
-        if (*vertex >= point_count) *vertex = number[*vertex - point_count];
-    }
-}
-
-/// Keeps the crossings that a loop uses, in order, and rounds them to coordinates.
-static bool make_vertices(enf_complex *complex, const enf_geometry *geometry) {
-    int32_t points = complex->point_count, made = geometry->crossing_count;
-    int32_t *number = enf_array_zeroed((size_t)made, sizeof *number);
-    if (!number) return false;
-    mark_vertices(&complex->facets, points, number);
-    mark_vertices(&complex->covers, points, number);
-    mark_vertices(&complex->pieces, points, number);
-    int32_t count = points;
-    for (int32_t i = 0; i < made; i++) number[i] = number[i] ? count++ : -1;
-    complex->vertex_count = count;
-    complex->vertex_planes = enf_array_new((size_t)count, sizeof *complex->vertex_planes);
-    complex->vertex_position = enf_array_new((size_t)count, sizeof *complex->vertex_position);
-    if (complex->vertex_planes && complex->vertex_position) {
-        memset(complex->vertex_planes, 0xff, (size_t)points * sizeof *complex->vertex_planes); // -1 -1 -1
-        memcpy(complex->vertex_position, complex->points, (size_t)points * sizeof *complex->vertex_position);
-        for (int32_t i = 0; i < made; i++) {
-            if (number[i] < 0) continue;
-            memcpy(complex->vertex_planes[number[i]], geometry->crossings[i].plane,
-                   sizeof *complex->vertex_planes);
-            enf_geometry_position(geometry, points + i, complex->vertex_position[number[i]]);
-        }
-        renumber_vertices(&complex->facets, points, number);
-        renumber_vertices(&complex->covers, points, number);
-        renumber_vertices(&complex->pieces, points, number);
-    }
-    free(number);
-    return complex->vertex_planes && complex->vertex_position;
-}
-
 // ---------------------------------------------------------------------------------------------- all together
 
 /// What the arrangement does not need any more.
 static bool take_arrangement(enf_complex *complex, enf_arrangement *arrangement) {
     const enf_tet_mesh *tets = &arrangement->tets;
-    enf_subdivision *space = &arrangement->subdivision;
     complex->points = arrangement->geometry.points;
     complex->point_count = arrangement->geometry.point_count;
     complex->planes = arrangement->geometry.planes;
     complex->plane_count = arrangement->geometry.plane_count;
     arrangement->geometry.planes = NULL;
-    complex->tetrahedron_root = space->tetrahedron_root;
-    complex->node_plane = space->node_plane;
-    complex->node_child = space->node_child;
-    space->tetrahedron_root = space->node_plane = NULL;
-    space->node_child = NULL;
     complex->tetrahedra = enf_array_new((size_t)tets->count, sizeof *complex->tetrahedra);
     if (!complex->tetrahedra) return false;
     memcpy(complex->tetrahedra, tets->corners, (size_t)tets->count * sizeof *complex->tetrahedra);
@@ -193,13 +141,9 @@ static bool take_arrangement(enf_complex *complex, enf_arrangement *arrangement)
 enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
                                enf_error *error) {
     (void)crew;
-    enf_subdivision *space = &arrangement->subdivision;
-    const enf_geometry geometry = space->geometry; // planes included, which the complex takes
     renumber_cells(complex, arrangement);
-    bool good = list_facets(complex) && make_sights(complex) && take_arrangement(complex, arrangement) &&
-                make_vertices(complex, &geometry);
-    complex->predicates_filter = arrangement->geometry.decided_by_filter + geometry.decided_by_filter;
-    complex->predicates_exact = arrangement->geometry.decided_exactly + geometry.decided_exactly;
-    enf_subdivision_free(space);
+    bool good = list_facets(complex) && make_sights(complex) && take_arrangement(complex, arrangement);
+    complex->predicates_filter += arrangement->geometry.decided_by_filter;
+    complex->predicates_exact += arrangement->geometry.decided_exactly;
     return good ? ENF_OK : enf_fail_memory(error, "the fine complex");
 }

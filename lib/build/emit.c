@@ -7,10 +7,10 @@
 /// A piece with corners, or (count = 0) one that is the whole facet.
 static bool add_piece(enf_settler *s, int32_t facet, const enf_corner *corners, int32_t count,
                       int32_t cover) {
-    enf_complex *complex = s->complex;
+    enf_complex *complex = &s->yield->complex;
     size_t pieces = (size_t)complex->pieces.count + 1;
-    if (!enf_array_reserve(complex->piece_facet, s->piece_facet_capacity, pieces) ||
-        !enf_array_reserve(complex->piece_cover, s->piece_cover_capacity, pieces) ||
+    if (!enf_array_reserve(complex->piece_facet, s->yield->piece_facet_capacity, pieces) ||
+        !enf_array_reserve(complex->piece_cover, s->yield->piece_cover_capacity, pieces) ||
         !enf_loops_append(&complex->pieces, corners, count)) {
         return false;
     }
@@ -74,7 +74,7 @@ static enf_loop copy_loop(enf_settler *s, const enf_loops *loops, int32_t index,
 
 /// A facet that covers share, and the rest of it.
 static bool share_facet(enf_settler *s, int32_t facet) {
-    const enf_complex *complex = s->complex;
+    const enf_complex *complex = &s->yield->complex;
     int32_t plane = complex->facet_plane[facet];
     s->pool.corner_count = 0;
     s->open_count = 0;
@@ -92,7 +92,7 @@ static bool share_facet(enf_settler *s, int32_t facet) {
 }
 
 static bool add_pieces(enf_settler *s, int32_t facet) {
-    const enf_complex *complex = s->complex;
+    const enf_complex *complex = &s->yield->complex;
     int32_t begin = complex->facet_cover[facet], end = complex->covers.count, over = begin;
     while (over < end && complex->covers.offset[over] != complex->covers.offset[over + 1]) over++;
     if (over < end) return add_piece(s, facet, NULL, 0, over);
@@ -105,14 +105,14 @@ static bool add_pieces(enf_settler *s, int32_t facet) {
 
 /// Moves the facet's covers to the complex.
 static bool add_covers(enf_settler *s, int32_t first) {
-    enf_complex *complex = s->complex;
+    enf_complex *complex = &s->yield->complex;
     for (int32_t i = first, next; i >= 0; i = next) {
         enf_cover *cover = &s->covers[i];
         size_t count = (size_t)complex->covers.count + 1;
         int64_t begin = cover->loop < 0 ? 0 : s->loops.offset[cover->loop];
         int32_t corners = cover->loop < 0 ? 0 : (int32_t)(s->loops.offset[cover->loop + 1] - begin);
-        if (!enf_array_reserve(complex->cover_polygon, s->cover_polygon_capacity, count) ||
-            !enf_array_reserve(complex->cover_side, s->cover_side_capacity, count) ||
+        if (!enf_array_reserve(complex->cover_polygon, s->yield->cover_polygon_capacity, count) ||
+            !enf_array_reserve(complex->cover_side, s->yield->cover_side_capacity, count) ||
             !enf_loops_append(&complex->covers, corners ? s->loops.corners + begin : NULL, corners)) {
             return false;
         }
@@ -128,14 +128,8 @@ static bool add_covers(enf_settler *s, int32_t first) {
 /// The facet's outline, without corners on straight lines (as enf_facet_loop), straight into the complex.
 static bool add_loop(enf_settler *s, int32_t facet) {
     const enf_half *halves = s->space->halves;
-    enf_loops *loops = &s->complex->facets;
+    enf_loops *loops = &s->yield->complex.facets;
     int32_t first = s->space->facets[facet].first, h = first;
-    if (first == ENF_FACET_WHOLE) {
-        int32_t corner[3], plane[3];
-        enf_subdivision_triangle(&s->arrangement->tets, s->space->facets[facet].source, corner, plane);
-        const enf_corner corners[3] = {{corner[1], plane[1]}, {corner[2], plane[2]}, {corner[0], plane[0]}};
-        return enf_loops_append(loops, corners, 3);
-    }
     if (!enf_array_reserve(loops->offset, loops->offset_capacity, (size_t)loops->count + 2)) return false;
     loops->offset[0] = 0;
     do {
@@ -152,14 +146,15 @@ static bool add_loop(enf_settler *s, int32_t facet) {
 }
 
 bool enf_emit_facet(enf_settler *s, int32_t facet) {
-    enf_complex *complex = s->complex;
+    enf_complex *complex = &s->yield->complex;
     const enf_share share = s->space->facets[facet];
     int32_t added = complex->facets.count;
     size_t count = (size_t)added + 1;
-    if (!enf_array_reserve(complex->facet_plane, s->plane_capacity, count) ||
-        !enf_array_reserve(complex->facet_cell, s->cell_capacity, count) ||
-        !enf_array_reserve(complex->facet_cover, s->facet_cover_capacity, count + 1) ||
-        !enf_array_reserve(complex->facet_piece, s->facet_piece_capacity, count + 1) || !add_loop(s, facet)) {
+    if (!enf_array_reserve(complex->facet_plane, s->yield->plane_capacity, count) ||
+        !enf_array_reserve(complex->facet_cell, s->yield->cell_capacity, count) ||
+        !enf_array_reserve(complex->facet_cover, s->yield->facet_cover_capacity, count + 1) ||
+        !enf_array_reserve(complex->facet_piece, s->yield->facet_piece_capacity, count + 1) ||
+        !add_loop(s, facet)) {
         return false;
     }
     complex->facet_plane[added] = enf_subdivision_plane(s->space, facet);

@@ -331,27 +331,17 @@ static place *make_places(const enf_tet_mesh *tets) {
     return places;
 }
 
-/// Candidates by tetrahedron, and all hits in a row; both in the order of the blocks.
-static bool join_blocks(enf_candidates *candidates, enf_arrangement *arrangement, const flood_block *blocks,
-                        int32_t block_count) {
-    size_t tets = (size_t)arrangement->tets.count, total = 0, hits = 0;
-    for (int32_t b = 0; b < block_count; b++) {
-        total += blocks[b].count;
-        hits += blocks[b].hit_count;
-    }
+/// Candidates by tetrahedron, in the order of the blocks.
+static bool join_candidates(enf_candidates *candidates, size_t tets, const flood_block *blocks,
+                            int32_t block_count) {
+    size_t total = 0;
+    for (int32_t b = 0; b < block_count; b++) total += blocks[b].count;
     if (total > INT32_MAX) return false;
     int32_t *next = candidates->offset = enf_array_zeroed(tets + 2, sizeof *next);
     candidates->candidates = enf_array_new(total, sizeof *candidates->candidates);
-    if (!next || !candidates->candidates ||
-        !enf_array_reserve(arrangement->hits, arrangement->hit_capacity, hits + 1)) {
-        return false;
-    }
+    if (!next || !candidates->candidates) return false;
     for (int32_t b = 0; b < block_count; b++) {
         for (size_t i = 0; i < blocks[b].count; i++) next[blocks[b].found[i].tetrahedron + 2]++;
-        if (blocks[b].hit_count == 0) continue;
-        memcpy(arrangement->hits + arrangement->hit_count, blocks[b].hits,
-               blocks[b].hit_count * sizeof *arrangement->hits);
-        arrangement->hit_count += blocks[b].hit_count;
     }
     for (size_t t = 0; t < tets; t++) next[t + 2] += next[t + 1];
     for (int32_t b = 0; b < block_count; b++) {
@@ -359,6 +349,25 @@ static bool join_blocks(enf_candidates *candidates, enf_arrangement *arrangement
             const found *f = &blocks[b].found[i];
             candidates->candidates[next[f->tetrahedron + 1]++] = f->candidate;
         }
+    }
+    return true;
+}
+
+/// Hits by facet, in the order of the blocks.
+static bool join_hits(enf_arrangement *arrangement, const flood_block *blocks, int32_t block_count) {
+    size_t facets = (size_t)arrangement->tets.facet_count, total = 0;
+    for (int32_t b = 0; b < block_count; b++) total += blocks[b].hit_count;
+    if (total > INT32_MAX) return false;
+    int32_t *next = arrangement->hit_first = enf_array_zeroed(facets + 2, sizeof *next);
+    arrangement->hits = enf_array_new(total, sizeof *arrangement->hits);
+    if (!next || !arrangement->hits) return false;
+    for (int32_t b = 0; b < block_count; b++) {
+        for (size_t i = 0; i < blocks[b].hit_count; i++) next[blocks[b].hits[i].source + 2]++;
+    }
+    for (size_t f = 0; f < facets; f++) next[f + 2] += next[f + 1];
+    for (int32_t b = 0; b < block_count; b++) {
+        for (size_t i = 0; i < blocks[b].hit_count; i++)
+            arrangement->hits[next[blocks[b].hits[i].source + 1]++] = blocks[b].hits[i];
     }
     return true;
 }
@@ -398,7 +407,9 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
     if (good) {
         *stopped = !enf_parallel_for(crew, block_count, flood_job, &all);
         for (int w = 0; w < threads; w++) good = good && !all.flooders[w].failed;
-        good = good && !*stopped && join_blocks(candidates, arrangement, all.blocks, block_count);
+        size_t tets = (size_t)arrangement->tets.count;
+        good = good && !*stopped && join_candidates(candidates, tets, all.blocks, block_count) &&
+               join_hits(arrangement, all.blocks, block_count);
     }
     for (int w = 0; all.flooders && w < threads; w++) end_flooder(&all.flooders[w], arrangement);
     for (int32_t b = 0; all.blocks && b < block_count; b++) {

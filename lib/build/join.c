@@ -22,23 +22,22 @@ static int32_t apex(const enf_tet_mesh *tets, int32_t t, int32_t facet) {
     return tets->corners[t][k];
 }
 
-/// For each facet between two tetrahedra that may be joined: a bit for each of its three edges at which the
-/// two together are not convex. Joining more to them does not mend that: no part of the facet at that edge
-/// need be tried.
-static uint8_t *find_reflex(const enf_tet_mesh *tets, const double *points, const uint8_t *may) {
-    uint8_t *reflex = enf_array_zeroed((size_t)tets->facet_count, sizeof *reflex);
-    for (int32_t f = 0; reflex && f < tets->facet_count; f++) {
-        int32_t behind = tets->facet_sides[f][0], front = tets->facet_sides[f][1];
-        if (behind < 0 || front < 0 || !may[behind] || !may[front]) continue;
-        const double *p = points + 3 * (size_t)apex(tets, behind, f),
-                     *q = points + 3 * (size_t)apex(tets, front, f);
-        for (int i = 0; i < 3; i++) {
-            const double *a = points + 3 * (size_t)tets->facet_corners[f][i],
-                         *b = points + 3 * (size_t)tets->facet_corners[f][(i + 1) % 3];
-            if (enf_points_orient(a, b, p, q) < 0) reflex[f] |= (uint8_t)(1 << i);
+/// For each facet between two tetrahedra of the part: a bit for each of its three edges at which the two
+/// together are not convex. Joining more to them does not mend that: no part of the facet at that edge need
+/// be tried.
+static void find_reflex(const enf_subdivision *s, const enf_tet_mesh *tets, uint8_t *reflex) {
+    const double *points = s->geometry.points;
+    for (size_t i = 0; i < s->facet_count; i++) {
+        if (s->facets[i].cell[0] < 0 || s->facets[i].cell[1] < 0) continue;
+        int32_t f = s->facets[i].source;
+        const double *p = points + 3 * (size_t)apex(tets, tets->facet_sides[f][0], f),
+                     *q = points + 3 * (size_t)apex(tets, tets->facet_sides[f][1], f);
+        for (int k = 0; k < 3; k++) {
+            const double *a = points + 3 * (size_t)tets->facet_corners[f][k],
+                         *b = points + 3 * (size_t)tets->facet_corners[f][(k + 1) % 3];
+            if (enf_points_orient(a, b, p, q) < 0) reflex[f] |= (uint8_t)(1 << k);
         }
     }
-    return reflex;
 }
 
 /// Has the facet a part of an edge of its tetrahedra at which they are not convex? Such an edge lies on
@@ -216,16 +215,17 @@ bool enf_joiner_reserve(enf_joiner *joiner, size_t cell_count) {
     return true;
 }
 
-bool enf_joiner_start(enf_joiner *joiner, const enf_tet_mesh *tets, const double *points,
-                      const uint8_t *may) {
-    memset(joiner, 0, sizeof *joiner);
+bool enf_joiner_start(enf_joiner *joiner, const enf_subdivision *subdivision, const enf_tet_mesh *tets,
+                      uint8_t *reflex) {
     joiner->tets = tets;
-    joiner->reflex = find_reflex(tets, points, may);
-    return joiner->reflex && enf_joiner_reserve(joiner, (size_t)tets->count);
+    joiner->reflex = reflex;
+    joiner->known = 0;
+    joiner->count = 0;
+    find_reflex(subdivision, tets, reflex);
+    return enf_joiner_reserve(joiner, subdivision->cell_count);
 }
 
 void enf_joiner_free(enf_joiner *joiner) {
-    free(joiner->reflex);
     free(joiner->into);
     memset(joiner, 0, sizeof *joiner);
 }

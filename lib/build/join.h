@@ -7,15 +7,17 @@
 
 typedef struct enf_joiner {
     const enf_tet_mesh *tets;
-    uint8_t *reflex; ///< per facet of the tetrahedra: edges at which nothing can be joined
+    uint8_t *reflex; ///< per facet of the tetrahedra: edges at which nothing can be joined; borrowed
     int32_t *into;   ///< per cell: the cell that it went into, or itself
     size_t known, capacity;
     int32_t count; ///< cells that went into another
 } enf_joiner;
 
-/// `may` tells which tetrahedra may be joined to others, parts of them included. False without memory; free
-/// it in any case.
-bool enf_joiner_start(enf_joiner *joiner, const enf_tet_mesh *tets, const double *points, const uint8_t *may);
+/// Begins with the tetrahedra of a part, every cell by itself; a joiner that has been used (or is all zero)
+/// is used again. `reflex` has a zero for each facet of the tetrahedra, and may be shared by parts: each
+/// fills in its own. False without memory; free it in any case.
+bool enf_joiner_start(enf_joiner *joiner, const enf_subdivision *subdivision, const enf_tet_mesh *tets,
+                      uint8_t *reflex);
 void enf_joiner_free(enf_joiner *joiner);
 
 /// Makes room for cells below this number. False without memory.

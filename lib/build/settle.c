@@ -11,34 +11,23 @@
 // ---------------------------------------------------------------------------------------------- start and
 // end
 
-/// The arrangement's hits by facet.
-static bool sort_hits(enf_settler *s) {
-    const enf_arrangement *arrangement = s->arrangement;
-    size_t facets = (size_t)arrangement->tets.facet_count;
-    int32_t *next = s->hit_first = enf_array_zeroed(facets + 2, sizeof *next);
-    s->hits = enf_array_new(arrangement->hit_count, sizeof *s->hits);
-    if (!next || !s->hits) return false;
-    for (size_t i = 0; i < arrangement->hit_count; i++) next[arrangement->hits[i].source + 2]++;
-    for (size_t f = 0; f < facets; f++) next[f + 2] += next[f + 1];
-    for (size_t i = 0; i < arrangement->hit_count; i++)
-        s->hits[next[arrangement->hits[i].source + 1]++] = arrangement->hits[i];
-    return true;
-}
-
 bool enf_settler_start(enf_settler *s, const enf_arrangement *arrangement, enf_subdivision *space,
-                       enf_complex *complex) {
-    memset(s, 0, sizeof *s);
+                       enf_yield *yield, uint8_t *reflex) {
     s->arrangement = arrangement;
     s->space = space;
-    s->complex = complex;
+    s->yield = yield;
+    s->join = !arrangement->plain;
+    s->cover_count = 0;
     s->free_cover = -1;
-    return sort_hits(s);
+    s->loops.count = 0;
+    s->loops.corner_count = 0;
+    return enf_joiner_start(&s->joiner, space, &arrangement->tets, reflex);
 }
 
 void enf_settler_free(enf_settler *s) {
     s->pool.geometry.crossings = NULL; // the space's
-    void *arrays[] = {s->hit_first, s->hits,    s->covers,    s->inner, s->next_inner, s->inner_of,
-                      s->outer,     s->touched, s->waits_for, s->open,  s->rest};
+    void *arrays[] = {s->covers,  s->inner,     s->next_inner, s->inner_of, s->outer,
+                      s->touched, s->waits_for, s->open,       s->rest};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     enf_loops_free(&s->loops);
     enf_joiner_free(&s->joiner);
@@ -117,14 +106,21 @@ static bool cover_inner(enf_settler *s, const enf_cut_cell *cut) {
     return true;
 }
 
-/// Lays polygons on facets of the tetrahedra.
+/// Lays polygons on a facet that lies on one of the tetrahedra's.
+static bool cover_from_hits(enf_settler *s, int32_t facet) {
+    const enf_arrangement *arrangement = s->arrangement;
+    int32_t source = s->space->facets[facet].source;
+    for (int32_t k = arrangement->hit_first[source]; k < arrangement->hit_first[source + 1]; k++) {
+        enf_polygon_lines_take(&s->lines, arrangement, arrangement->hits[k].polygon,
+                               arrangement->hits[k].lines);
+        if (!enf_cover_facet(s, facet)) return false;
+    }
+    return true;
+}
+
 static bool cover_outer(enf_settler *s) {
     for (size_t i = 0; i < s->outer_count; i++) {
-        int32_t source = s->space->facets[s->outer[i]].source;
-        for (int32_t k = s->hit_first[source]; k < s->hit_first[source + 1]; k++) {
-            enf_polygon_lines_take(&s->lines, s->arrangement, s->hits[k].polygon, s->hits[k].lines);
-            if (!enf_cover_facet(s, s->outer[i])) return false;
-        }
+        if (!cover_from_hits(s, s->outer[i])) return false;
     }
     return true;
 }
@@ -180,12 +176,27 @@ static bool close_cell(enf_settler *s, int32_t cell) {
     return true;
 }
 
+static bool reserve_lines(enf_settler *s) {
+    const enf_geometry *geometry = &s->space->geometry;
+    return enf_polygon_lines_reserve(&s->lines,
+                                     (size_t)geometry->point_count + (size_t)geometry->crossing_count);
+}
+
+bool enf_settler_settle_still(enf_settler *s) {
+    size_t count = s->space->facet_count; // of the tetrahedra's, before anything is cut
+    for (size_t f = 0; f < count; f++) {
+        const enf_share *facet = &s->space->facets[f];
+        if (facet->cell[0] >= 0 || facet->cell[1] >= 0) continue;
+        if (!reserve_lines(s) || !cover_from_hits(s, (int32_t)f) || !enf_emit_facet(s, (int32_t)f))
+            return false;
+    }
+    return true;
+}
+
 bool enf_settler_settle(enf_settler *s, const enf_cut_cell *cut) {
     enf_subdivision *space = s->space;
-    size_t vertices = (size_t)space->geometry.point_count + (size_t)space->geometry.crossing_count;
-    if (!enf_polygon_lines_reserve(&s->lines, vertices) ||
-        !enf_array_reserve(s->waits_for, s->waits_capacity, space->cell_count) || !list_all(s, cut) ||
-        !cover_inner(s, cut) || !cover_outer(s)) {
+    if (!reserve_lines(s) || !enf_array_reserve(s->waits_for, s->waits_capacity, space->cell_count) ||
+        !list_all(s, cut) || !cover_inner(s, cut) || !cover_outer(s)) {
         return false;
     }
     for (size_t i = 0; i < s->outer_count; i++) { // before facets go

@@ -7,11 +7,10 @@
 #ifndef ENF_BUILD_SETTLE_H
 #define ENF_BUILD_SETTLE_H
 
-#include "build/arrangement.h"
-#include "build/complex.h"
 #include "build/join.h"
 #include "build/loop.h"
 #include "build/polygon_lines.h"
+#include "build/yield.h"
 
 /// The share of a polygon on a facet that is not in the complex yet.
 typedef struct enf_cover {
@@ -24,14 +23,11 @@ typedef struct enf_cover {
 typedef struct enf_settler {
     const enf_arrangement *arrangement;
     enf_subdivision *space;
-    enf_complex *complex;
+    enf_yield *yield; ///< where settled facets go
     enf_joiner joiner;
     bool join; ///< cells may be joined
     enf_polygon_lines lines;
     enf_pool pool; ///< has the space's geometry while it clips
-
-    int32_t *hit_first; ///< per facet of the tetrahedra, offsets into `hits`
-    enf_hit *hits;
 
     enf_cover *covers;
     size_t cover_count, cover_capacity;
@@ -51,9 +47,6 @@ typedef struct enf_settler {
     int32_t *touched; ///< cells that may be closed now
     size_t touched_count, touched_capacity;
 
-    // The complex as it grows.
-    size_t plane_capacity, cell_capacity, facet_cover_capacity, facet_piece_capacity;
-    size_t cover_polygon_capacity, cover_side_capacity, piece_facet_capacity, piece_cover_capacity;
     enf_loop *open, *rest; ///< of the facet at hand: what no cover has taken yet
     size_t open_count, open_capacity, rest_count, rest_capacity;
 } enf_settler;
@@ -65,9 +58,14 @@ typedef struct enf_cut_cell {
     size_t hit_count;
 } enf_cut_cell;
 
-/// Facets of the tetrahedra are covered by arrangement->hits. False without memory; free it in any case.
+/// Begins with a part whose tetrahedra are in `space`; a settler that has been used (or is all zero) is used
+/// again. Facets of the tetrahedra are covered by arrangement->hits; `reflex`: see enf_joiner_start. False
+/// without memory; free it in any case.
 bool enf_settler_start(enf_settler *settler, const enf_arrangement *arrangement, enf_subdivision *space,
-                       enf_complex *complex);
+                       enf_yield *yield, uint8_t *reflex);
+
+/// Settles the facets between tetrahedra that stay as they are. False without memory.
+bool enf_settler_settle_still(enf_settler *settler);
 void enf_settler_free(enf_settler *settler);
 
 /// False without memory.

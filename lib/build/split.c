@@ -10,8 +10,11 @@
 
 #include "base/array.h"
 #include "build/flood.h"
+#include "build/parts.h"
 #include "build/settle.h"
+#include "build/still.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,9 +25,25 @@ typedef struct polygon_sides {
 
 enum { SIDES_KNOWN = 1024 }; ///< the last ones: two polygons meet in many cells, one after the other
 
-typedef struct cutter {
+/// What all threads share.
+typedef struct splitting {
     enf_arrangement *arrangement;
-    enf_subdivision *space;
+    enf_candidates candidates;
+    enf_parts parts;
+    enf_yield *yields;      ///< per part
+    uint8_t *reflex;        ///< see enf_joiner_start
+    struct cutter *cutters; ///< per thread
+    const enf_crew *crew;
+    atomic_int cells_done; ///< for the watch
+    atomic_bool stopped;
+} splitting;
+
+/// One thread's tools; they serve one part after the other.
+typedef struct cutter {
+    splitting *all;
+    const enf_arrangement *arrangement;
+    enf_tet_part part;                   ///< at hand
+    enf_subdivision subdivision, *space; ///< the latter points to the former
     enf_settler settler;
     enf_polygon_lines lines;
     enf_hit *hits; ///< on the cuts of the cell at hand
@@ -33,7 +52,10 @@ typedef struct cutter {
     enf_candidate *candidates;
     size_t candidate_capacity;
     size_t ref_capacity;
+    int32_t *next; ///< per cell that was a tetrahedron: the next one of those that were joined to one cell
+    size_t next_capacity;
     polygon_sides *known; ///< by a hash of polygon and plane
+    bool watched;         ///< is the caller's own thread
     bool failed;          ///< out of memory
 } cutter;
 
@@ -170,47 +192,23 @@ static void cut_tetrahedron(cutter *c, int32_t t) {
     }
 }
 
-// ---------------------------------------------------------------------------------------------- all of them
+// ---------------------------------------------------------------------------------------------- one part
 
-/// Tetrahedra that will be cut are joined first where that makes a convex cell: a polygon then cuts one cell,
-/// not several.
-static bool join_tetrahedra(cutter *c, const enf_candidates *candidates) {
-    const enf_tet_mesh *tets = &c->arrangement->tets;
-    enf_joiner *joiner = &c->settler.joiner;
+/// Tetrahedra are joined first where that makes a convex cell: a polygon then cuts one cell, not several.
+static void join_tetrahedra(cutter *c) {
     enf_subdivision *space = c->space;
-    uint8_t *may = enf_array_new((size_t)tets->count, sizeof *may);
-    for (int32_t t = 0; may && t < tets->count; t++)
-        may[t] = candidates->offset[t] < candidates->offset[t + 1];
-    bool good = may && enf_joiner_start(joiner, tets, space->geometry.points, may);
-    const int32_t *first = c->settler.hit_first; // facets that polygons lie on stay
-    for (int32_t f = 0; f < tets->facet_count; f++) space->facets[f].cover = first[f] < first[f + 1] ? 0 : -1;
-    for (int32_t f = tets->facet_count - 1; good && c->settler.join && f >= 0; f--) {
+    const int32_t *first = c->arrangement->hit_first; // facets that polygons lie on stay
+    size_t count = space->facet_count;
+    for (size_t f = 0; f < count; f++) {
+        enf_share *facet = &space->facets[f];
+        facet->cover = facet->first >= 0 && first[facet->source] < first[facet->source + 1] ? 0 : -1;
+    }
+    for (size_t f = count; f-- > 0;) {
         const enf_share *facet = &space->facets[f];
-        if (facet->first < 0 || facet->cell[0] < 0 || facet->cell[1] < 0) continue;
-        if (may[facet->cell[0]] && may[facet->cell[1]]) enf_joiner_try(joiner, space, f);
+        if (facet->first >= 0 && facet->cell[0] >= 0 && facet->cell[1] >= 0)
+            enf_joiner_try(&c->settler.joiner, space, (int32_t)f);
     }
-    for (int32_t f = 0; f < tets->facet_count; f++)
-        space->facets[f].cover = -1; // the polygons come when all is cut
-    free(may);
-    return good;
-}
-
-/// Facets that cutting, joining or clipping will look at closely: all but those between two tetrahedra that
-/// no polygon enters, where the polygons on them, if any, cover the whole. free() it; null without memory.
-static uint8_t *mark_facets(const enf_arrangement *arrangement, const enf_candidates *candidates) {
-    const enf_tet_mesh *tets = &arrangement->tets;
-    uint8_t *marked = enf_array_zeroed((size_t)tets->facet_count, sizeof *marked);
-    for (int32_t t = 0; marked && t < tets->count; t++) {
-        if (candidates->offset[t] == candidates->offset[t + 1]) continue;
-        for (int k = 0; k < 4; k++) marked[tets->facets[t][k]] = 1;
-    }
-    for (size_t i = 0; marked && i < arrangement->hit_count; i++) {
-        const enf_hit *hit = &arrangement->hits[i];
-        int64_t corners = arrangement->mesh->polygon_corner[hit->polygon + 1] -
-                          arrangement->mesh->polygon_corner[hit->polygon];
-        if (hit->lines || corners > ENF_LINES_FEW) marked[hit->source] = 1;
-    }
-    return marked;
+    for (size_t f = 0; f < count; f++) space->facets[f].cover = -1; // the polygons come when all is cut
 }
 
 static int compare_ranks(const void *a, const void *b) {
@@ -233,19 +231,18 @@ static void sort_candidates(enf_candidate *candidates, size_t count) {
     }
 }
 
-/// The candidates of the tetrahedra in a cell, each once. `next` lists them, from the one that gave the cell
-/// its number.
-static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t *next, int32_t first) {
+/// The candidates of the tetrahedra in a cell, each once.
+static size_t gather(cutter *c, int32_t cell) {
+    const enf_candidates *all = &c->all->candidates;
     size_t count = 0, kept = 0, members = 0;
-    for (int32_t t = first; t >= 0; t = next[t]) {
-        size_t more = (size_t)(candidates->offset[t + 1] - candidates->offset[t]);
+    for (int32_t m = cell; m >= 0; m = c->next[m]) {
+        int32_t t = c->part.tetrahedra[m];
+        size_t more = (size_t)(all->offset[t + 1] - all->offset[t]);
         if (!enf_array_reserve(c->candidates, c->candidate_capacity, count + more)) {
             c->failed = true;
             return 0;
         }
-        if (more)
-            memcpy(c->candidates + count, candidates->candidates + candidates->offset[t],
-                   more * sizeof *c->candidates);
+        memcpy(c->candidates + count, all->candidates + all->offset[t], more * sizeof *c->candidates);
         count += more;
         members++;
     }
@@ -261,32 +258,18 @@ static size_t gather(cutter *c, const enf_candidates *candidates, const int32_t 
     return kept;
 }
 
-enum { WATCH_EVERY = 512 };
-
-#define FLOOD_SHARE 0.3 ///< of the stage's time, about: only the progress bar sees it
-
-/// The watch sees one stage where there are two.
-typedef struct half_watch {
-    const enf_crew *crew;
-    double begun, share;
-} half_watch;
-
-static bool watch_half(void *user, double fraction) {
-    const half_watch *half = user;
-    return !half->crew->watch || half->crew->watch(half->crew->user, half->begun + half->share * fraction);
-}
-
-/// The tetrahedra of each cell as lists (free() it), or null without memory.
-static int32_t *list_members(cutter *c) {
-    int32_t count = c->arrangement->tets.count, *next = enf_array_new((size_t)count, sizeof *next);
-    for (int32_t t = 0; next && t < count; t++) next[t] = -1;
-    for (int32_t t = count - 1; next && t >= 0; t--) {
-        int32_t into = enf_joiner_find(&c->settler.joiner, t);
-        if (into == t) continue;
-        next[t] = next[into];
-        next[into] = t;
+/// The tetrahedra of each cell as lists, from the one that gave the cell its number. False without memory.
+static bool list_members(cutter *c) {
+    int32_t count = c->part.tetrahedron_count;
+    if (!enf_array_reserve(c->next, c->next_capacity, (size_t)count)) return false;
+    for (int32_t m = 0; m < count; m++) c->next[m] = -1;
+    for (int32_t m = count - 1; m >= 0; m--) {
+        int32_t into = enf_joiner_find(&c->settler.joiner, m);
+        if (into == m) continue;
+        c->next[m] = c->next[into];
+        c->next[into] = m;
     }
-    return next;
+    return true;
 }
 
 enum {
@@ -294,15 +277,16 @@ enum {
 }; ///< candidates that are put in order by what they split; more stay in that of planes
 
 /// Puts first the polygons whose planes split the fewest of the others; equals stay as they are.
-static void weigh_candidates(cutter *c, const enf_candidates *candidates, size_t count) {
+static void weigh_candidates(cutter *c, size_t count) {
     const enf_arrangement *arrangement = c->arrangement;
+    const int32_t *order = c->all->candidates.order;
     int splits[WEIGHED_MAX];
     if (count < 3 || count > WEIGHED_MAX) return; // of two that cross, either order makes four cells of one
     for (size_t i = 0; i < count; i++) {
-        int32_t plane = arrangement->polygon_plane[candidates->order[c->candidates[i].rank]];
+        int32_t plane = arrangement->polygon_plane[order[c->candidates[i].rank]];
         splits[i] = 0;
         for (size_t k = 0; k < count; k++) {
-            int32_t other = candidates->order[c->candidates[k].rank];
+            int32_t other = order[c->candidates[k].rank];
             if (arrangement->polygon_plane[other] == plane) continue;
             enf_polygon_lines_take(&c->lines, arrangement, other, 0);
             splits[i] += corner_sides(c, plane) == 3;
@@ -323,11 +307,11 @@ static void weigh_candidates(cutter *c, const enf_candidates *candidates, size_t
 
 /// Where the polygon stays out of some tetrahedra of the cell, nothing is known of its lines there: wants
 /// only those that have a corner of the cell outside.
-static void narrow_lines(cutter *c, const int32_t *next, int32_t first) {
+static void narrow_lines(cutter *c, int32_t cell) {
     uint32_t outside = 0;
-    for (int32_t t = first; t >= 0 && outside != c->lines.wanted; t = next[t]) {
+    for (int32_t m = cell; m >= 0 && outside != c->lines.wanted; m = c->next[m]) {
         for (int k = 0; k < 4; k++) {
-            int32_t point = c->arrangement->tets.corners[t][k];
+            int32_t point = c->arrangement->tets.corners[c->part.tetrahedra[m]][k];
             outside |= enf_polygon_lines_at(&c->lines, &c->space->geometry, point)->outside;
         }
     }
@@ -335,20 +319,19 @@ static void narrow_lines(cutter *c, const int32_t *next, int32_t first) {
 }
 
 /// Cuts one cell by all its candidates, and settles what came of it.
-static void cut_by_all(cutter *c, const enf_candidates *candidates, size_t count, const int32_t *next,
-                       int32_t cell) {
+static void cut_by_all(cutter *c, size_t count, int32_t cell) {
     enf_subdivision *space = c->space;
     enf_cut_cell cut = {
         .cell = cell, .first_cell = (int32_t)space->cell_count, .first_node = (int32_t)space->node_count};
     space->plane = -1;
     c->hit_count = 0;
-    weigh_candidates(c, candidates, count);
+    weigh_candidates(c, count);
     for (size_t i = 0; i < count && !c->failed; i++) {
-        int32_t polygon = candidates->order[c->candidates[i].rank];
+        int32_t polygon = c->all->candidates.order[c->candidates[i].rank];
         int32_t plane = c->arrangement->polygon_plane[polygon];
         if (plane != space->plane) enf_subdivision_take_plane(space, plane);
         enf_polygon_lines_take(&c->lines, c->arrangement, polygon, c->candidates[i].lines);
-        if (c->candidates[i].lines == UINT32_MAX) narrow_lines(c, next, cell);
+        if (c->candidates[i].lines == UINT32_MAX) narrow_lines(c, cell);
         cut_tetrahedron(c, cell);
     }
     cut.hits = c->hits;
@@ -356,68 +339,147 @@ static void cut_by_all(cutter *c, const enf_candidates *candidates, size_t count
     if (!c->failed && !enf_settler_settle(&c->settler, &cut)) c->failed = true;
 }
 
-/// All tetrahedra in turn; false if stopped.
-static bool cut_all(cutter *c, const enf_candidates *candidates, const enf_crew *crew) {
-    int32_t count = c->arrangement->tets.count, *next = NULL;
-    bool stopped = false;
-    c->failed = !join_tetrahedra(c, candidates) || !(next = list_members(c));
-    for (int32_t t = 0; t < count && !c->failed && !stopped; t++) {
-        stopped = t % WATCH_EVERY == 0 && crew->watch && !crew->watch(crew->user, (double)t / (double)count);
-        if (enf_joiner_find(&c->settler.joiner, t) != t) continue; // went into another
-        size_t polygons = gather(c, candidates, next, t);
-        if (!c->failed) cut_by_all(c, candidates, polygons, next, t);
+enum { WATCH_EVERY = 64 }; ///< cells
+
+/// Tells the watch how far all threads are, before the next cells. False if it says stop.
+static bool go_on(cutter *c) {
+    splitting *all = c->all;
+    const enf_crew *crew = all->crew;
+    int done = atomic_fetch_add(&all->cells_done, WATCH_EVERY);
+    if (c->watched && crew->watch) {
+        double share = (double)done / (1.0 + all->parts.tetrahedron_first[all->parts.count]);
+        if (!crew->watch(crew->user, share < 1 ? share : 1)) atomic_store(&all->stopped, true);
     }
-    for (int32_t t = 0; t < count && !c->failed; t++) {
-        for (int32_t k = next[t]; k >= 0 && c->space->tetrahedron_root[t] >= 0; k = next[k])
-            c->space->tetrahedron_root[k] = c->space->tetrahedron_root[t];
-    }
-    free(next);
-    return !stopped;
+    return !atomic_load(&all->stopped);
 }
 
-/// What connect needs, and what the report says.
-static void finish(enf_complex *complex, enf_arrangement *arrangement, enf_joiner *joiner) {
-    enf_subdivision *space = &arrangement->subdivision;
-    complex->tetrahedron_count = arrangement->tets.count;
-    complex->node_count = (int32_t)space->node_count;
-    complex->cells_joined = joiner->count;
-    complex->cell_count = (int32_t)space->cell_count - joiner->count;
-    for (int32_t t = 0; t < complex->tetrahedron_count; t++)
-        complex->tetrahedra_cut += space->tetrahedron_root[t] >= 0;
-    for (size_t c = 0; c < space->cell_count; c++) enf_joiner_find(joiner, (int32_t)c);
-    arrangement->cell_into = joiner->into;
+/// All cells of the part in turn.
+static void cut_cells(cutter *c) {
+    int32_t count = c->part.tetrahedron_count;
+    for (int32_t m = 0; m < count && !c->failed; m++) {
+        if (m % WATCH_EVERY == 0 && !go_on(c)) return;
+        if (enf_joiner_find(&c->settler.joiner, m) != m) continue; // went into another
+        size_t polygons = gather(c, m);
+        if (!c->failed) cut_by_all(c, polygons, m);
+    }
+    for (int32_t m = 0; m < count && !c->failed; m++) {
+        for (int32_t k = c->next[m]; k >= 0 && c->space->tetrahedron_root[m] >= 0; k = c->next[k])
+            c->space->tetrahedron_root[k] = c->space->tetrahedron_root[m];
+    }
+}
+
+/// What the joiner knows, and the subdivision's trees and vertices, become the part's.
+static bool finish_part(cutter *c, enf_yield *yield) {
+    enf_joiner *joiner = &c->settler.joiner;
+    for (size_t cell = 0; cell < c->space->cell_count; cell++) enf_joiner_find(joiner, (int32_t)cell);
+    int32_t *into = joiner->into;
     joiner->into = NULL;
-    enf_subdivision_strip(space);
+    joiner->capacity = 0;
+    yield->complex.cells_joined = joiner->count;
+    return enf_yield_finish(yield, c->space, into);
+}
+
+static void cut_part(void *user, int32_t index, int thread) {
+    splitting *all = user;
+    cutter *c = &all->cutters[thread];
+    enf_yield *yield = &all->yields[index];
+    c->part = enf_parts_at(&all->parts, index);
+    bool good = !c->failed &&
+                enf_subdivision_start(c->space, &all->arrangement->geometry, &all->arrangement->tets,
+                                      &c->part, all->parts.cuts[index]) &&
+                enf_polygon_lines_reserve(&c->lines, all->arrangement->mesh->point_count) &&
+                enf_settler_start(&c->settler, all->arrangement, c->space, yield, all->reflex) &&
+                enf_settler_settle_still(&c->settler);
+    if (good) {
+        if (c->settler.join) join_tetrahedra(c);
+        good = list_members(c);
+    }
+    if (good) cut_cells(c);
+    if (!good || c->failed || (!atomic_load(&all->stopped) && !finish_part(c, yield))) c->failed = true;
+}
+
+// ---------------------------------------------------------------------------------------------- all of them
+
+#define FLOOD_SHARE 0.3 ///< of the stage's time, about: only the progress bar sees it
+
+/// The watch sees one stage where there are two.
+typedef struct half_watch {
+    const enf_crew *crew;
+    double begun, share;
+} half_watch;
+
+static bool watch_half(void *user, double fraction) {
+    const half_watch *half = user;
+    return !half->crew->watch || half->crew->watch(half->crew->user, half->begun + half->share * fraction);
+}
+
+static bool start_cutter(cutter *c, splitting *all, bool watched) {
+    c->all = all;
+    c->arrangement = all->arrangement;
+    c->space = &c->subdivision;
+    c->watched = watched;
+    c->known =
+        enf_array_zeroed(SIDES_KNOWN, sizeof *c->known); // no polygon lies in plane 0: that is a facet's
+    return c->known;
+}
+
+static void free_cutter(cutter *c) {
+    enf_settler_free(&c->settler);
+    enf_subdivision_free(&c->subdivision);
+    enf_polygon_lines_free(&c->lines);
+    free(c->known);
+    free(c->refs);
+    free(c->candidates);
+    free(c->hits);
+    free(c->next);
+}
+
+/// All parts, on all threads. False without memory or when stopped.
+static bool cut_parts(splitting *all) {
+    int32_t count = all->parts.count;
+    int threads = all->crew->threads < count ? all->crew->threads : count;
+    all->cutters = enf_array_zeroed((size_t)threads, sizeof *all->cutters);
+    all->reflex = enf_array_zeroed((size_t)all->arrangement->tets.facet_count, sizeof *all->reflex);
+    bool good = all->cutters && all->reflex;
+    for (int i = 0; good && i < threads; i++) good = start_cutter(&all->cutters[i], all, i == 0);
+    if (good) {
+        enf_crew unwatched = {.threads = threads}; // the cutters ask the watch themselves
+        enf_parallel_for(&unwatched, count, cut_part, all);
+        for (int i = 0; i < threads; i++) good = good && !all->cutters[i].failed;
+    }
+    for (int i = 0; all->cutters && i < threads; i++) free_cutter(&all->cutters[i]);
+    free(all->cutters);
+    free(all->reflex);
+    return good && !atomic_load(&all->stopped);
+}
+
+/// The stage's second half, when the candidates are known.
+static bool split_parts(splitting *all, enf_complex *complex) {
+    if (!enf_parts_make(&all->parts, all->arrangement, &all->candidates)) return false;
+    all->yields = enf_array_zeroed((size_t)all->parts.count, sizeof *all->yields);
+    bool good =
+        all->yields && enf_still_emit(&all->yields[0], all->arrangement, &all->parts, all->crew->threads);
+    good = good && cut_parts(all);
+    enf_candidates_free(&all->candidates);
+    good = good && enf_yields_gather(all->yields, &all->parts, all->crew, all->arrangement, complex);
+    for (int32_t i = 0; all->yields && i < all->parts.count; i++) enf_yield_free(&all->yields[i]);
+    free(all->yields);
+    return good;
 }
 
 enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
                              enf_error *error) {
     memset(complex, 0, sizeof *complex);
-    cutter c = {.arrangement = arrangement, .space = &arrangement->subdivision};
-    enf_candidates candidates;
+    splitting all = {.arrangement = arrangement};
     half_watch half = {.crew = crew, .share = FLOOD_SHARE};
-    enf_crew watched = {.threads = crew->threads, .watch = watch_half, .user = &half};
-    bool stopped, good = enf_candidates_find(&candidates, arrangement, &watched, &stopped);
+    const enf_crew watched = {.threads = crew->threads, .watch = watch_half, .user = &half};
+    all.crew = &watched;
+    bool stopped, good = enf_candidates_find(&all.candidates, arrangement, &watched, &stopped);
     half = (half_watch){.crew = crew, .begun = FLOOD_SHARE, .share = 1 - FLOOD_SHARE};
-    uint8_t *marked = good ? mark_facets(arrangement, &candidates) : NULL;
-    good = marked && enf_subdivision_start(c.space, &arrangement->geometry, &arrangement->tets, marked,
-                                           (size_t)candidates.offset[arrangement->tets.count]);
-    free(marked);
-    good = good && enf_polygon_lines_reserve(&c.lines, arrangement->mesh->point_count);
-    good = good && enf_settler_start(&c.settler, arrangement, c.space, complex);
-    c.settler.join = !arrangement->plain;
-    c.known = enf_array_zeroed(SIDES_KNOWN, sizeof *c.known); // no polygon lies in plane 0: that is a facet's
-    good = good && c.known;
-    if (good) stopped = !cut_all(&c, &candidates, &watched);
-    good = good && !c.failed;
-    enf_candidates_free(&candidates);
-    if (good) finish(complex, arrangement, &c.settler.joiner);
-    enf_settler_free(&c.settler);
-    enf_polygon_lines_free(&c.lines);
-    free(c.known);
-    free(c.refs);
-    free(c.candidates);
-    free(c.hits);
+    good = good && split_parts(&all, complex);
+    stopped = stopped || atomic_load(&all.stopped);
+    enf_candidates_free(&all.candidates);
+    enf_parts_free(&all.parts);
     if (stopped) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
     return good ? ENF_OK : enf_fail_memory(error, "the fine cells");
 }

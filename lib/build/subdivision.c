@@ -6,24 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-void enf_subdivision_strip(enf_subdivision *s) {
-    void **arrays[] = {(void **)&s->halves,      (void **)&s->facets,     (void **)&s->edge_half,
-                       (void **)&s->edge_slot,   (void **)&s->cell_facet, (void **)&s->cell_parent,
-                       (void **)&s->cell_state,  (void **)&s->shares,     (void **)&s->cut_edges,
-                       (void **)&s->vertex_sign, (void **)&s->outline,    (void **)&s->outline_at,
-                       (void **)&s->touching};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        free(*arrays[i]);
-        *arrays[i] = NULL;
-    }
-}
-
 void enf_subdivision_free(enf_subdivision *s) {
-    enf_subdivision_strip(s);
-    free(s->geometry.crossings);
-    free(s->node_plane);
-    free(s->node_child);
-    free(s->tetrahedron_root);
+    void *arrays[] = {
+        s->halves,      s->facets,     s->edge_half,       s->edge_slot,          s->cell_facet,
+        s->cell_parent, s->cell_state, s->shares,          s->cut_edges,          s->vertex_sign,
+        s->outline,     s->outline_at, s->touching,        s->geometry.crossings, s->node_plane,
+        s->node_child,  s->pairing,    s->tetrahedron_root};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     memset(s, 0, sizeof *s);
 }
 
@@ -80,8 +69,8 @@ static void remove_halves(enf_subdivision *s, int32_t first) {
 }
 
 void enf_subdivision_remove(enf_subdivision *s, int32_t f) {
-    if (s->facets[f].first != ENF_FACET_WHOLE) remove_halves(s, s->facets[f].first);
-    s->facets[f].first = ENF_FACET_GONE;
+    remove_halves(s, s->facets[f].first);
+    s->facets[f].first = -1;
     s->facets[f].source = s->free_facet;
     s->free_facet = f;
 }
@@ -102,96 +91,130 @@ void enf_subdivision_triangle(const enf_tet_mesh *tets, int32_t facet, int32_t c
     }
 }
 
-/// A facet of the tetrahedra, with three halves if it is to have any; edges come later.
-static void add_tetrahedron_facet(enf_subdivision *s, const enf_tet_mesh *tets, int32_t facet, bool halves) {
-    int32_t first = halves ? (int32_t)s->half_count : ENF_FACET_WHOLE, corner[3], edge_plane[3];
-    s->facets[facet] = (enf_share){.source = facet, .next = {-1, -1}, .first = first, .cover = -1};
-    for (int side = 0; side < 2; side++) s->facets[facet].cell[side] = tets->facet_sides[facet][side];
-    if (!halves) return;
-    enf_subdivision_triangle(tets, facet, corner, edge_plane);
+/// What a facet has on one side.
+static int32_t side_cell(const enf_tet_part *part, int32_t tetrahedron) {
+    if (tetrahedron < 0) return -1;
+    int32_t cell = part->cell_of[tetrahedron];
+    return cell < 0 ? -2 - tetrahedron : cell;
+}
+
+/// A facet of the tetrahedra, with three halves; edges come later.
+static void add_tetrahedron_facet(enf_subdivision *s, const enf_tet_mesh *tets, const enf_tet_part *part,
+                                  int32_t source) {
+    int32_t added = (int32_t)s->facet_count++, first = (int32_t)s->half_count, corner[3], edge_plane[3];
+    s->facets[added] = (enf_share){.source = source, .next = {-1, -1}, .first = first, .cover = -1};
+    for (int side = 0; side < 2; side++) {
+        int32_t cell = s->facets[added].cell[side] = side_cell(part, tets->facet_sides[source][side]);
+        if (cell < 0) continue;
+        s->facets[added].next[side] = s->cell_facet[cell];
+        s->cell_facet[cell] = added;
+    }
+    enf_subdivision_triangle(tets, source, corner, edge_plane);
     for (int i = 0; i < 3; i++) {
         s->halves[s->half_count++] = (enf_half){
-            .vertex = corner[i], .next = first + (i + 1) % 3, .edge_plane = edge_plane[i], .facet = facet};
+            .vertex = corner[i], .next = first + (i + 1) % 3, .edge_plane = edge_plane[i], .facet = added};
+    }
+}
+
+/// The edges of the halves that `first` begins, which have their lower vertex in common; they are told apart
+/// by the higher one.
+static void pair_list(enf_subdivision *s, int32_t first, int32_t low) {
+    s->pairing_mark++;
+    for (int32_t h = first, next; h >= 0; h = next) {
+        enf_half *half = &s->halves[h];
+        next = half->radial;
+        int32_t to = s->halves[half->next].vertex;
+        struct enf_pairing *high = &s->pairing[half->vertex == low ? to : half->vertex];
+        if (high->mark != s->pairing_mark) {
+            high->mark = s->pairing_mark;
+            high->edge = (int32_t)s->edge_count++;
+            s->edge_half[high->edge] = -1;
+        }
+        half->edge = high->edge;
+        half->radial = s->edge_half[half->edge];
+        s->edge_half[half->edge] = h;
     }
 }
 
 /// Gives halves between the same two vertices the same edge. Halves are first listed by their lower vertex
-/// (through `radial`), then each list is told apart by the higher one.
-static bool pair_halves(enf_subdivision *s) {
-    size_t points = (size_t)s->geometry.point_count;
-    int32_t *list = enf_array_new(points, sizeof *list), *edge_of = enf_array_new(points, sizeof *edge_of);
-    if (!list || !edge_of) {
-        free(list);
-        free(edge_of);
-        return false;
-    }
-    for (size_t i = 0; i < points; i++) list[i] = edge_of[i] = -1;
+/// (through `radial`), then list by list.
+static void pair_halves(enf_subdivision *s) {
     for (size_t h = s->half_count; h-- > 0;) {
         int32_t from = s->halves[h].vertex, to = s->halves[s->halves[h].next].vertex;
-        int32_t low = from < to ? from : to;
-        s->halves[h].radial = list[low];
-        list[low] = (int32_t)h;
+        struct enf_pairing *low = &s->pairing[from < to ? from : to];
+        s->halves[h].radial = low->half;
+        low->half = (int32_t)h;
     }
-    for (size_t low = 0; low < points; low++) {
-        int32_t first_edge = (int32_t)s->edge_count;
-        for (int32_t h = list[low], next; h >= 0; h = next) {
-            enf_half *half = &s->halves[h];
-            next = half->radial;
-            int32_t to = s->halves[half->next].vertex,
-                    high = half->vertex == (int32_t)low ? to : half->vertex;
-            if (edge_of[high] < first_edge) {
-                edge_of[high] = (int32_t)s->edge_count++;
-                s->edge_half[edge_of[high]] = -1;
-            }
-            half->edge = edge_of[high];
-            half->radial = s->edge_half[half->edge];
-            s->edge_half[half->edge] = h;
-        }
+    for (size_t h = 0; h < s->half_count; h++) {
+        int32_t from = s->halves[h].vertex, to = s->halves[s->halves[h].next].vertex;
+        int32_t low = from < to ? from : to, first = s->pairing[low].half;
+        s->pairing[low].half = -1;
+        if (first >= 0) pair_list(s, first, low);
     }
-    free(list);
-    free(edge_of);
+}
+
+/// Room for a pairing of each point, no half listed.
+static bool reserve_pairing(enf_subdivision *s, size_t points) {
+    size_t known = s->pairing_capacity;
+    if (!enf_array_reserve(s->pairing, s->pairing_capacity, points)) return false;
+    for (; known < s->pairing_capacity; known++) s->pairing[known] = (struct enf_pairing){.half = -1};
     return true;
 }
 
-bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, const enf_tet_mesh *tets,
-                           const uint8_t *marked, size_t cuts) {
-    memset(s, 0, sizeof *s);
+/// Vertices are new, but what is marked with the number of a plane or pairing is told from older marks.
+static bool reserve_vertices(enf_subdivision *s, size_t count) {
+    size_t known = s->sign_capacity;
+    if (!enf_array_reserve(s->vertex_sign, s->sign_capacity, count) ||
+        !enf_array_reserve(s->outline_at, s->outline_at_capacity, count)) {
+        return false;
+    }
+    if (s->sign_capacity > known)
+        memset(s->vertex_sign + known, 0, (s->sign_capacity - known) * sizeof *s->vertex_sign);
+    return true;
+}
+
+/// The geometry without the crossings of others.
+static void take_geometry(enf_subdivision *s, const enf_geometry *geometry) {
+    enf_crossing *crossings = s->geometry.crossings;
+    size_t capacity = s->geometry.crossing_capacity;
     s->geometry = *geometry;
-    size_t facets = (size_t)tets->facet_count, count = (size_t)tets->count;
+    s->geometry.crossings = crossings;
+    s->geometry.crossing_capacity = capacity;
+    s->geometry.crossing_count = 0;
+    s->geometry.decided_by_filter = s->geometry.decided_exactly = 0;
+}
+
+bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, const enf_tet_mesh *tets,
+                           const enf_tet_part *part, size_t cuts) {
+    size_t facets = (size_t)part->facet_count, count = (size_t)part->tetrahedron_count;
     size_t points = (size_t)geometry->point_count;
+    take_geometry(s, geometry);
+    s->half_count = s->facet_count = s->edge_count = s->node_count = 0;
     s->free_half = s->free_facet = s->free_edge = -1;
-    s->tetrahedron_count = tets->count;
+    s->cell_count = count;
+    s->tetrahedron_count = part->tetrahedron_count;
     s->tetrahedron_planes = tets->facet_count;
-    s->tetrahedron_root = enf_array_new(count, sizeof *s->tetrahedron_root);
-    // Edges: as many as points and facets less tetrahedra and one (Euler), if the hull is a ball.
-    if (!s->tetrahedron_root || !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 1) ||
+    if (!enf_array_reserve(s->tetrahedron_root, s->root_capacity, count + 1) ||
+        !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 1) ||
         !enf_array_reserve(s->facets, s->facet_capacity, facets + 1) ||
-        !enf_array_reserve(s->edge_half, s->edge_capacity, points + facets + 1) ||
+        !enf_array_reserve(s->edge_half, s->edge_capacity, 3 * facets + 1) ||
         !enf_array_reserve(s->cell_facet, s->cell_capacity, count + cuts + 1) ||
         !enf_array_reserve(s->cell_parent, s->parent_capacity, count + cuts + 1) ||
         !enf_array_reserve(s->cell_state, s->state_capacity, count + cuts + 1) ||
         !enf_array_reserve(s->node_plane, s->node_capacity, cuts) ||
         !enf_array_reserve(s->node_child, s->child_capacity, cuts) ||
-        !enf_array_reserve(s->vertex_sign, s->sign_capacity, points + cuts + 1) ||
-        !enf_array_reserve(s->outline_at, s->outline_at_capacity, points + cuts + 1) ||
-        !enf_array_reserve(s->geometry.crossings, s->geometry.crossing_capacity, cuts + 1)) {
+        !enf_array_reserve(s->geometry.crossings, s->geometry.crossing_capacity, cuts + 1) ||
+        !reserve_vertices(s, points + cuts + 1) || !reserve_pairing(s, points)) {
         return false;
     }
-    memset(s->vertex_sign, 0, points * sizeof *s->vertex_sign);
-    s->facet_count = facets;
-    s->cell_count = count;
-    for (size_t f = 0; f < facets; f++) add_tetrahedron_facet(s, tets, (int32_t)f, marked[f]);
-    for (int32_t t = 0; t < tets->count; t++) {
-        s->tetrahedron_root[t] = s->cell_parent[t] = -1 - t;
-        s->cell_state[t] = ENF_CELL_WAITS;
-        s->cell_facet[t] = -1;
-        for (int k = 0; k < 4; k++) {
-            int32_t facet = tets->facets[t][k], front = tets->facet_sides[facet][1] == t;
-            s->facets[facet].next[front] = s->cell_facet[t];
-            s->cell_facet[t] = facet;
-        }
+    for (int32_t c = 0; c < part->tetrahedron_count; c++) {
+        s->tetrahedron_root[c] = s->cell_parent[c] = -1 - c;
+        s->cell_state[c] = ENF_CELL_WAITS;
+        s->cell_facet[c] = -1;
     }
-    return pair_halves(s);
+    for (int32_t i = 0; i < part->facet_count; i++) add_tetrahedron_facet(s, tets, part, part->facets[i]);
+    pair_halves(s);
+    return true;
 }
 
 // ---------------------------------------------------------------------------------------------- looking

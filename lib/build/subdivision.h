@@ -22,16 +22,20 @@ typedef struct enf_half {
 
 typedef struct enf_share {
     int32_t source;  ///< >= 0: lies on this facet of the tetrahedra; < 0: on the cut of node -1 - source
-    int32_t cell[2]; ///< behind, in front; -1: outside the hull
+    int32_t cell[2]; ///< behind, in front; -1: outside the hull; -2 - t: tetrahedron t, which stays as it is
     int32_t next[2]; ///< the next facet around that cell; -1: the last
-    int32_t first;   ///< a half; or one of the two below
+    int32_t first;   ///< a half; -1: the facet is gone
     int32_t cover;   ///< the owner's: see settle.c
 } enf_share;
 
-enum {
-    ENF_FACET_GONE = -1,
-    ENF_FACET_WHOLE = -2, ///< a facet of the tetrahedra, as it was: has no halves
-};
+/// A part of the tetrahedra that is cut by itself: no facet lies between tetrahedra of different parts that
+/// may be cut.
+typedef struct enf_tet_part {
+    int32_t tetrahedron_count, facet_count;
+    const int32_t *tetrahedra; ///< ascending; cell i is this one
+    const int32_t *facets;     ///< ascending: all of theirs, and others that must be looked at closely
+    const int32_t *cell_of;    ///< per tetrahedron of the world: its cell; -1: it stays as it is
+} enf_tet_part;
 
 enum { ENF_CELL_WAITS, ENF_CELL_CUT, ENF_CELL_CLOSED }; ///< what becomes of a cell: see settle.h
 
@@ -61,12 +65,13 @@ typedef struct enf_subdivision {
     size_t edge_count, edge_capacity, slot_capacity;
 
     int32_t *cell_facet;  ///< the first facet around each cell; -1: the cell is gone
-    int32_t *cell_parent; ///< 2 * node + child, or -1 - tetrahedron
+    int32_t *cell_parent; ///< 2 * node + child, or -1 - cell: a tetrahedron
     uint8_t *cell_state;
     size_t cell_count, cell_capacity, parent_capacity, state_capacity;
 
     int32_t tetrahedron_count, tetrahedron_planes; ///< planes below the latter are the tetrahedra's
-    int32_t *tetrahedron_root;                     ///< as in enf_complex
+    int32_t *tetrahedron_root;                     ///< per cell that was one; as in enf_complex
+    size_t root_capacity;
     int32_t *node_plane;
     int32_t (*node_child)[2];
     size_t node_count, node_capacity, child_capacity;
@@ -90,18 +95,20 @@ typedef struct enf_subdivision {
     size_t outline_count, outline_capacity;
     int32_t *outline_at; ///< per vertex: the outline's part that starts there
     size_t outline_at_capacity;
+    struct enf_pairing {
+        int32_t half, mark, edge;
+    } * pairing; ///< per point, see pair_halves
+    size_t pairing_capacity;
+    int32_t pairing_mark;
 } enf_subdivision;
 
-/// The tetrahedra themselves as cells, cell t for tetrahedron t. The geometry must hold points and the planes
-/// of the tetrahedra's facets, plane f for facet f. Only marked facets get halves: those of tetrahedra that
-/// may be cut or joined, and others that must be looked at closely. About how many cuts there will be saves
-/// moving arrays. False without memory; free it in any case.
+/// Begins with the tetrahedra of a part as cells; a subdivision that has been used (or is all zero) is used
+/// again. The geometry must hold points and the planes of the tetrahedra's facets, plane f for facet f; its
+/// crossings are not taken. About how many cuts there will be saves moving arrays. False without memory; free
+/// it in any case.
 bool enf_subdivision_start(enf_subdivision *subdivision, const enf_geometry *geometry,
-                           const enf_tet_mesh *tets, const uint8_t *marked, size_t cuts);
+                           const enf_tet_mesh *tets, const enf_tet_part *part, size_t cuts);
 void enf_subdivision_free(enf_subdivision *subdivision);
-
-/// Frees all but the vertices and the trees of cuts.
-void enf_subdivision_strip(enf_subdivision *subdivision);
 
 /// From now on cells are held against this plane.
 void enf_subdivision_take_plane(enf_subdivision *subdivision, int32_t plane);

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Most facets of a finely drawn world are of this kind. Where each will stand is known beforehand (count,
+// prefix sum, fill), so threads fill in blocks of them at the same time.
+#include "build/still.h"
+
+#include "base/array.h"
+#include "build/subdivision.h"
+
+#include <stdlib.h>
+
+enum { BLOCK = 1 << 14 }; ///< facets a job
+
+/// Where a block of the tetrahedra's facets begins in the complex.
+typedef struct place {
+    int32_t facet, cover;
+} place;
+
+typedef struct still {
+    const enf_arrangement *arrangement;
+    const uint8_t *marked;
+    enf_complex *complex;
+    place *places; ///< per block, and one more
+} still;
+
+static int32_t block_end(const still *all, int32_t block) {
+    int32_t begin = block * BLOCK, left = all->arrangement->tets.facet_count - begin;
+    return begin + (left < BLOCK ? left : BLOCK);
+}
+
+static void count_block(void *user, int32_t block, int thread) {
+    (void)thread;
+    still *all = user;
+    place *counts = &all->places[block + 1];
+    const int32_t *hit_first = all->arrangement->hit_first;
+    for (int32_t f = block * BLOCK; f < block_end(all, block); f++) {
+        if (all->marked[f]) continue;
+        counts->facet++;
+        counts->cover += hit_first[f + 1] - hit_first[f];
+    }
+}
+
+/// The polygons on a facet, from this cover on. Returns the cover after them.
+static int32_t fill_covers(const still *all, int32_t source, int32_t cover) {
+    const enf_arrangement *arrangement = all->arrangement;
+    enf_complex *complex = all->complex;
+    for (int32_t i = arrangement->hit_first[source]; i < arrangement->hit_first[source + 1]; i++, cover++) {
+        int32_t polygon = arrangement->hits[i].polygon, own = arrangement->polygon_plane[polygon];
+        bool opposite = !enf_geometry_same_way(&arrangement->geometry, own, source);
+        complex->cover_polygon[cover] = polygon;
+        complex->cover_side[cover] = opposite == arrangement->polygon_flipped[polygon];
+        complex->covers.offset[cover] = 0;
+    }
+    return cover;
+}
+
+/// Facet number `added`, which has this piece and the covers from `cover` on. Returns the cover after them.
+static int32_t fill_facet(const still *all, int32_t source, int32_t added, int32_t cover) {
+    enf_complex *complex = all->complex;
+    int32_t corner[3], edge_plane[3];
+    enf_subdivision_triangle(&all->arrangement->tets, source, corner, edge_plane);
+    for (int i = 0; i < 3; i++) {
+        complex->facets.corners[3 * (size_t)added + (size_t)i] =
+            (enf_corner){corner[(i + 1) % 3], edge_plane[(i + 1) % 3]};
+    }
+    complex->facets.offset[added] = 3 * (int64_t)added;
+    complex->facet_plane[added] = source;
+    for (int side = 0; side < 2; side++)
+        complex->facet_cell[added][side] = all->arrangement->tets.facet_sides[source][side];
+    int32_t after = fill_covers(all, source, cover);
+    complex->facet_cover[added] = cover;
+    complex->facet_piece[added] = added;
+    complex->pieces.offset[added] = 0;
+    complex->piece_facet[added] = added;
+    complex->piece_cover[added] = cover < after ? cover : ENF_PIECE_OPEN;
+    return after;
+}
+
+static void fill_block(void *user, int32_t block, int thread) {
+    (void)thread;
+    still *all = user;
+    place at = all->places[block];
+    for (int32_t f = block * BLOCK; f < block_end(all, block); f++) {
+        if (!all->marked[f]) at.cover = fill_facet(all, f, at.facet++, at.cover);
+    }
+}
+
+/// From numbers per block to places.
+static void add_up(place *places, int32_t blocks) {
+    for (int32_t b = 0; b < blocks; b++) {
+        places[b + 1].facet += places[b].facet;
+        places[b + 1].cover += places[b].cover;
+    }
+}
+
+/// Counts, and the ends of offsets.
+static void set_counts(enf_yield *yield, place end) {
+    enf_complex *complex = &yield->complex;
+    yield->still_count = complex->facet_count = complex->facets.count = complex->pieces.count = end.facet;
+    complex->facets.corner_count = 3 * (size_t)end.facet;
+    complex->covers.count = end.cover;
+    complex->facets.offset[end.facet] = 3 * (int64_t)end.facet;
+    complex->covers.offset[end.cover] = complex->pieces.offset[end.facet] = 0;
+    complex->facet_cover[end.facet] = end.cover;
+    complex->facet_piece[end.facet] = end.facet;
+}
+
+bool enf_still_emit(enf_yield *yield, const enf_arrangement *arrangement, const enf_parts *parts,
+                    int threads) {
+    const enf_crew crew = {.threads = threads};
+    int32_t facets = arrangement->tets.facet_count, blocks = facets / BLOCK + 1;
+    still all = {.arrangement = arrangement, .marked = parts->marked, .complex = &yield->complex};
+    all.places = enf_array_zeroed((size_t)blocks + 1, sizeof *all.places);
+    if (!all.places) return false;
+    enf_parallel_for(&crew, blocks, count_block, &all);
+    add_up(all.places, blocks);
+    place end = all.places[blocks];
+    // The parts' own facets follow: of each that is in a part there will be at least one.
+    size_t more = (size_t)parts->facet_first[parts->count];
+    bool good = enf_yield_reserve(yield, (size_t)end.facet + more, (size_t)end.cover + more / 4);
+    if (good) {
+        enf_parallel_for(&crew, blocks, fill_block, &all);
+        set_counts(yield, end);
+    }
+    free(all.places);
+    return good;
+}
