@@ -146,8 +146,9 @@ static void put_graph(enf_json *json, const cli_job *job, const cli_counts *coun
         enf_json_number(json, "leak_width", build->regions.leak_width * build->mesh.frame.step);
     }
     enf_json_begin_object(json, "predicates");
-    enf_json_whole(json, "filter", (int64_t)build->complex.predicates_filter);
-    enf_json_whole(json, "exact", (int64_t)build->complex.predicates_exact);
+    enf_json_whole(json, "filter", (int64_t)build->complex.predicates[ENF_TIER_FILTER]);
+    enf_json_whole(json, "pairs", (int64_t)build->complex.predicates[ENF_TIER_PAIRS]);
+    enf_json_whole(json, "exact", (int64_t)build->complex.predicates[ENF_TIER_EXACT]);
     enf_json_end_object(json);
 }
 

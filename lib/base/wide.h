@@ -5,6 +5,8 @@
 #ifndef ENF_BASE_WIDE_H
 #define ENF_BASE_WIDE_H
 
+#include "base/limbs.h"
+
 #include <stdint.h>
 
 #define ENF_WIDE_LIMBS 8
@@ -14,9 +16,6 @@ typedef struct enf_wide {
     int size; ///< limbs in use; the highest is not 0
     uint64_t limb[ENF_WIDE_LIMBS];
 } enf_wide;
-
-__extension__ typedef __int128 enf_int128;
-__extension__ typedef unsigned __int128 enf_uint128;
 
 void enf_wide_set(enf_wide *result, enf_int128 value);
 void enf_wide_set_parts(enf_wide *result, enf_int128 high,

@@ -121,10 +121,13 @@ static enf_status connect(kitchen *k) {
     enf_complex *complex = &k->build->complex;
     enf_status status = enf_complex_connect(complex, &k->arrangement, &k->crew, k->error);
     if (status != ENF_OK) return status;
-    uint64_t all = complex->predicates_filter + complex->predicates_exact;
-    say(k, "%d facets in %d pieces; %.3f %% of %.3g predicates needed exact arithmetic",
-        (int)complex->facet_count, (int)complex->pieces.count,
-        all ? 100.0 * (double)complex->predicates_exact / (double)all : 0, (double)all);
+    const uint64_t *tier = complex->predicates;
+    double all = (double)(tier[ENF_TIER_FILTER] + tier[ENF_TIER_PAIRS] + tier[ENF_TIER_EXACT]);
+    double part = all > 0 ? 100 / all : 0;
+    say(k,
+        "%d facets in %d pieces; of %.3g predicates %.3f %% needed pairs of doubles, %.3f %% exact numbers",
+        (int)complex->facet_count, (int)complex->pieces.count, all, part * (double)tier[ENF_TIER_PAIRS],
+        part * (double)tier[ENF_TIER_EXACT]);
     return ENF_OK;
 }
 

@@ -22,6 +22,7 @@
 #define ENF_BUILD_COMPLEX_H
 
 #include "build/clean.h"
+#include "build/geometry.h"
 
 /// What a piece is, where it is not the number of a cover.
 enum {
@@ -93,7 +94,7 @@ typedef struct enf_complex {
     // Work done and work skipped, for the report.
     int32_t tetrahedra_cut; ///< tetrahedra that some polygon crosses; the others are one fine cell each
     int32_t cells_joined;   ///< that went into others: tetrahedra before they were cut, pieces of them after
-    uint64_t predicates_filter, predicates_exact; ///< decided in floating point / by exact arithmetic
+    uint64_t predicates[ENF_TIERS]; ///< by what decided them
 } enf_complex;
 
 void enf_complex_free(enf_complex *complex);

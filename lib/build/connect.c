@@ -143,7 +143,6 @@ enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangemen
     (void)crew;
     renumber_cells(complex, arrangement);
     bool good = list_facets(complex) && make_sights(complex) && take_arrangement(complex, arrangement);
-    complex->predicates_filter += arrangement->geometry.decided_by_filter;
-    complex->predicates_exact += arrangement->geometry.decided_exactly;
+    for (int i = 0; i < ENF_TIERS; i++) complex->predicates[i] += arrangement->geometry.decided[i];
     return good ? ENF_OK : enf_fail_memory(error, "the fine complex");
 }

@@ -375,15 +375,14 @@ static bool join_hits(enf_arrangement *arrangement, const flood_block *blocks, i
 static bool start_flooder(flooder *w, const enf_arrangement *arrangement) {
     size_t points = arrangement->mesh->point_count;
     w->geometry = arrangement->geometry;
-    w->geometry.decided_by_filter = w->geometry.decided_exactly = 0;
+    memset(w->geometry.decided, 0, sizeof w->geometry.decided);
     w->plane = -1;
     w->stamp = enf_array_zeroed((size_t)arrangement->tets.count, sizeof *w->stamp);
     return w->stamp && enf_polygon_lines_reserve(&w->lines, points);
 }
 
 static void end_flooder(flooder *w, enf_arrangement *arrangement) {
-    arrangement->geometry.decided_by_filter += w->geometry.decided_by_filter;
-    arrangement->geometry.decided_exactly += w->geometry.decided_exactly;
+    for (int i = 0; i < ENF_TIERS; i++) arrangement->geometry.decided[i] += w->geometry.decided[i];
     free(w->stamp);
     free(w->stack);
     enf_polygon_lines_free(&w->lines);

@@ -7,7 +7,9 @@
 
 #include "base/array.h"
 #include "base/exact.h"
-#include "base/wide.h"
+#include "base/limbs.h"
+#include "build/doubled_plane.h"
+#include "build/exact_plane.h"
 
 #include <math.h>
 
@@ -152,67 +154,10 @@ const enf_plane_filter *enf_geometry_filter(const enf_geometry *geometry, int32_
 
 // ---------------------------------------------------------------------------------------------- exact tier
 
-typedef struct exact_plane {
-    enf_wide normal[3], offset;
-} exact_plane;
-
-static void exact_plane_of(const enf_geometry *geometry, int32_t plane, exact_plane *out) {
-    const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
+static void exact_plane_of(const enf_geometry *geometry, int32_t plane, enf_exact_plane *out) {
     int64_t u[3], v[3];
     whole_spans(geometry, plane, u, v);
-    enf_int128 high = 0, low = 0; // of the offset, in halves of the normal
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        enf_int128 normal = (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j];
-        enf_wide_set(&out->normal[i], normal);
-        high -= (normal >> 64) * (int64_t)p[i];
-        low -= (enf_int128)(uint64_t)normal * (int64_t)p[i];
-    }
-    enf_wide_set_parts(&out->offset, high, low);
-}
-
-static const enf_wide *component(const exact_plane *plane, int i) {
-    return i < 3 ? &plane->normal[i] : &plane->offset;
-}
-
-static void minor(enf_wide *out, const exact_plane *a, const exact_plane *b, int i, int j) {
-    enf_wide_multiply(out, component(a, i), component(b, j));
-    enf_wide_subtract_product(out, component(a, j), component(b, i));
-}
-
-/// The normals' determinant.
-static void weight_of(enf_wide *out, const exact_plane plane[3]) {
-    enf_wide part;
-    out->sign = out->size = 0;
-    for (int i = 0; i < 3; i++) {
-        minor(&part, &plane[1], &plane[2], (i + 1) % 3, (i + 2) % 3);
-        enf_wide_add_product(out, &plane[0].normal[i], &part);
-    }
-}
-
-/// Minus component i of (offset_a * b x c + offset_b * c x a + offset_c * a x b).
-static void numerator_of(enf_wide *out, const exact_plane plane[3], int i) {
-    out->sign = out->size = 0;
-    for (int k = 0; k < 3; k++) {
-        enf_wide part;
-        minor(&part, &plane[(k + 1) % 3], &plane[(k + 2) % 3], (i + 1) % 3, (i + 2) % 3);
-        enf_wide_subtract_product(out, &plane[k].offset, &part);
-    }
-}
-
-/// Sign of the determinant of four planes' coefficients, by Laplace's expansion in 2x2 minors.
-static int determinant_sign(const exact_plane *a, const exact_plane *b, const exact_plane *c,
-                            const exact_plane *d) {
-    static const int pair[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
-                                   {1, 2, 0, 3}, {3, 1, 0, 2}, {2, 3, 0, 1}};
-    enf_wide sum = {0}, above, below;
-    for (int i = 0; i < 6; i++) {
-        minor(&above, a, b, pair[i][0], pair[i][1]);
-        if (above.sign == 0) continue;
-        minor(&below, c, d, pair[i][2], pair[i][3]);
-        enf_wide_add_product(&sum, &above, &below);
-    }
-    return sum.sign;
+    enf_exact_plane_set(out, geometry->points + 3 * (size_t)geometry->planes[plane][0], u, v);
 }
 
 // ---------------------------------------------------------------------------------------------- crossings
@@ -279,11 +224,9 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
     if (fabs(crossing->weight) > crossing->weight_error) {
         crossing->weight_sign = crossing->weight > 0 ? 1 : -1;
     } else {
-        exact_plane plane[3];
-        enf_wide weight;
+        enf_exact_plane plane[3];
         for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &plane[k]);
-        weight_of(&weight, plane);
-        crossing->weight_sign = weight.sign;
+        crossing->weight_sign = enf_exact_planes_weight_sign(plane);
     }
     return geometry->point_count + geometry->crossing_count++;
 }
@@ -299,10 +242,10 @@ static int decide_point(enf_geometry *geometry, const double *x, int32_t plane,
                  *q = geometry->points + 3 * (size_t)defined[1];
     double unit = filter->normal_unit * enf_points_unit((const double *const[]){x, p}, 2);
     if (filter->normal_error == 0 && magnitude < 0x1p53 * unit) { // nothing was rounded: 0 is 0
-        geometry->decided_by_filter++;
+        geometry->decided[ENF_TIER_FILTER]++;
         return value > 0 ? 1 : value < 0 ? -1 : 0;
     }
-    geometry->decided_exactly++;
+    geometry->decided[ENF_TIER_EXACT]++;
     double third[3];
     if (defined[2] >= 0) return enf_points_orient(p, q, geometry->points + 3 * (size_t)defined[2], x);
     int axis = axis_of(defined[2]), step = p[axis] > 0 ? -1 : 1; // one step beyond 2^53 is no double
@@ -316,7 +259,7 @@ static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t p
     if (point == defined[0] || point == defined[1] || point == defined[2]) return 0;
     const double *x = geometry->points + 3 * (size_t)point, *p = geometry->points + 3 * (size_t)defined[0];
     if (filter->axis >= 0) { // a comparison
-        geometry->decided_by_filter++;
+        geometry->decided[ENF_TIER_FILTER]++;
         double here = x[filter->axis], there = p[filter->axis];
         int order = (here > there) - (here < there);
         return filter->normal[filter->axis] > 0 ? order : -order;
@@ -329,7 +272,7 @@ static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t p
         reach += fabs(difference);
     }
     if (fabs(value) > 6 * U * magnitude + 1.001 * filter->normal_error * reach) {
-        geometry->decided_by_filter++;
+        geometry->decided[ENF_TIER_FILTER]++;
         return value > 0 ? 1 : -1;
     }
     return decide_point(geometry, x, plane, filter, value, magnitude);
@@ -377,25 +320,46 @@ static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int
     return holding >= 2;
 }
 
+/// The second tier: sign of the determinant of a crossing's planes and another, 0 if not certain.
+static int sign_in_pairs(const enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
+    enf_doubled_plane doubled[4];
+    const double *origin = geometry->points + 3 * (size_t)geometry->planes[crossing->plane[0]][0];
+    for (int k = 0; k < 4; k++) {
+        int32_t one = k < 3 ? crossing->plane[k] : plane;
+        int64_t u[3], v[3];
+        whole_spans(geometry, one, u, v);
+        if (!enf_doubled_plane_set(&doubled[k], geometry->points + 3 * (size_t)geometry->planes[one][0], u, v,
+                                   origin)) {
+            return 0;
+        }
+    }
+    return enf_doubled_planes_sign(doubled);
+}
+
 /// Where rounding may hide the side.
 static int decide_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
                            const enf_plane_filter *filter, double value, double magnitude, double error) {
     if (error == 6 * U * magnitude &&
         magnitude < 0x1p53 * fmin(filter->normal_unit * crossing->at_unit,
                                   filter->offset_unit * crossing->weight_unit)) {
-        geometry->decided_by_filter++; // nothing was rounded: 0 is 0
+        geometry->decided[ENF_TIER_FILTER]++; // nothing was rounded: 0 is 0
         return value > 0 ? crossing->weight_sign : value < 0 ? -crossing->weight_sign : 0;
     }
     if (shares_line(geometry, crossing, plane) || holds_edge(geometry, crossing, plane)) {
-        geometry->decided_by_filter++;
+        geometry->decided[ENF_TIER_FILTER]++;
         return 0;
     }
-    geometry->decided_exactly++;
-    exact_plane exact[4];
+    int sign = sign_in_pairs(geometry, crossing, plane);
+    if (sign != 0) {
+        geometry->decided[ENF_TIER_PAIRS]++;
+        return sign * crossing->weight_sign;
+    }
+    geometry->decided[ENF_TIER_EXACT]++;
+    enf_exact_plane exact[4];
     for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &exact[k]);
     exact_plane_of(geometry, plane, &exact[3]);
     // The determinant is the weight times the fourth plane's value at the crossing.
-    return determinant_sign(&exact[0], &exact[1], &exact[2], &exact[3]) * crossing->weight_sign;
+    return enf_exact_planes_sign(exact) * crossing->weight_sign;
 }
 
 static inline int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
@@ -413,7 +377,7 @@ static inline int side_of_crossing(enf_geometry *geometry, const enf_crossing *c
                    filter->offset_error * (fabs(crossing->weight) + crossing->weight_error) +
                    fabs(filter->offset) * crossing->weight_error;
     if (fabs(value) > 1.01 * error) {
-        geometry->decided_by_filter++;
+        geometry->decided[ENF_TIER_FILTER]++;
         return value > 0 ? crossing->weight_sign : -crossing->weight_sign;
     }
     return decide_crossing(geometry, crossing, plane, filter, value, magnitude, error);
@@ -443,7 +407,7 @@ int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane) {
     if (!stored && vertex < geometry->point_count && defined[2] >= 0) { // cheaper than making a filter
         if (vertex == defined[0] || vertex == defined[1] || vertex == defined[2]) return 0;
         const double *at = geometry->points;
-        geometry->decided_by_filter++;
+        geometry->decided[ENF_TIER_FILTER]++;
         return enf_points_orient(at + 3 * (size_t)defined[0], at + 3 * (size_t)defined[1],
                                  at + 3 * (size_t)defined[2], at + 3 * (size_t)vertex);
     }
@@ -513,12 +477,7 @@ void enf_geometry_position(const enf_geometry *geometry, int32_t vertex, double 
         for (int i = 0; i < 3; i++) position[i] = crossing->at[i] / crossing->weight;
         return;
     }
-    exact_plane plane[3];
-    enf_wide weight, numerator;
+    enf_exact_plane plane[3];
     for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &plane[k]);
-    weight_of(&weight, plane);
-    for (int i = 0; i < 3; i++) {
-        numerator_of(&numerator, plane, i);
-        position[i] = enf_wide_quotient(&numerator, &weight);
-    }
+    enf_exact_planes_meet(plane, position);
 }

@@ -4,7 +4,8 @@
 //
 // Coordinates are whole numbers, |x| <= 2^53. With differences of 54 bits, a plane's normal has 109 bits and
 // its offset 164; the determinant of four planes stays below 2^497, so 512 bits decide every case
-// (base/wide.h).
+// (exact_plane.h). Few get so far: a filter in doubles, then one in pairs of doubles (doubled_plane.h) decide
+// nearly all.
 #ifndef ENF_BUILD_GEOMETRY_H
 #define ENF_BUILD_GEOMETRY_H
 
@@ -30,6 +31,9 @@ typedef struct enf_crossing {
     double at_unit, weight_unit;   ///< powers of two that divide the true values
 } enf_crossing;
 
+/// What decides a predicate: doubles, pairs of doubles, whole numbers of any size.
+enum { ENF_TIER_FILTER, ENF_TIER_PAIRS, ENF_TIER_EXACT, ENF_TIERS };
+
 /// Vertices are numbered: points, then crossings.
 typedef struct enf_geometry {
     int32_t point_count;
@@ -45,7 +49,7 @@ typedef struct enf_geometry {
     int32_t crossing_count;
     size_t crossing_capacity;
 
-    uint64_t decided_by_filter, decided_exactly;
+    uint64_t decided[ENF_TIERS]; ///< predicates, by what decided them
 } enf_geometry;
 
 /// The plane's filter, from planes[plane].

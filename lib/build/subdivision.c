@@ -181,7 +181,7 @@ static void take_geometry(enf_subdivision *s, const enf_geometry *geometry) {
     s->geometry.crossings = crossings;
     s->geometry.crossing_capacity = capacity;
     s->geometry.crossing_count = 0;
-    s->geometry.decided_by_filter = s->geometry.decided_exactly = 0;
+    memset(s->geometry.decided, 0, sizeof s->geometry.decided);
 }
 
 bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, const enf_tet_mesh *tets,

@@ -102,8 +102,7 @@ bool enf_yield_finish(enf_yield *yield, enf_subdivision *space, int32_t *into) {
     space->root_capacity = space->node_capacity = space->child_capacity = 0;
     for (int32_t t = 0; t < complex->tetrahedron_count; t++)
         complex->tetrahedra_cut += complex->tetrahedron_root[t] >= 0;
-    complex->predicates_filter = space->geometry.decided_by_filter;
-    complex->predicates_exact = space->geometry.decided_exactly;
+    memcpy(complex->predicates, space->geometry.decided, sizeof complex->predicates);
     return take_vertices(yield, &space->geometry);
 }
 
@@ -304,8 +303,7 @@ bool enf_yields_gather(enf_yield *yields, const enf_parts *parts, const enf_crew
         complex->tetrahedra_cut += one->tetrahedra_cut;
         complex->cells_joined += one->cells_joined;
         complex->cell_count -= one->cells_joined;
-        complex->predicates_filter += one->predicates_filter;
-        complex->predicates_exact += one->predicates_exact;
+        for (int k = 0; k < ENF_TIERS; k++) complex->predicates[k] += one->predicates[k];
     }
     base end = all.bases[parts->count];
     bool good = make_room(&all, &yields[0], end);

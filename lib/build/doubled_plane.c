@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// T. J. Dekker, "A floating-point technique for extending the available precision" (1971). Sums are his
+// simpler ones, whose error is at most 2^-104 of |a| + |b|; products are off by at most 2^-102 of themselves.
+#include "build/doubled_plane.h"
+
+#include <math.h>
+
+/// Below: how far a determinant can be off, as a part of 6 * size^4 * reach, which bounds the sum of its
+/// terms' sizes. Each term passes through no more than three products of pairs, ten sums, and coefficients
+/// that are off by less than 2^-100: together less than 2^-97.
+#define UNSURE (6 * 0x1p-97)
+
+#define WHOLE_MAX 0x1p53
+
+static inline enf_doubled quick_sum(double a, double b) { // |a| >= |b|
+    double sum = a + b;
+    return (enf_doubled){sum, b - (sum - a)};
+}
+
+static inline enf_doubled add(enf_doubled a, enf_doubled b) {
+    double sum = a.high + b.high, part = sum - a.high;
+    double error = (a.high - (sum - part)) + (b.high - part);
+    return quick_sum(sum, error + (a.low + b.low));
+}
+
+static inline enf_doubled negative(enf_doubled a) {
+    return (enf_doubled){-a.high, -a.low};
+}
+
+static inline enf_doubled subtract(enf_doubled a, enf_doubled b) {
+    return add(a, negative(b));
+}
+
+/// The upper half of a double's bits.
+static inline double upper(double a) {
+    double spread = 134217729.0 * a; // 2^27 + 1
+    return spread - (spread - a);
+}
+
+/// Exact.
+static inline enf_doubled multiply_doubles(double a, double b) {
+    double product = a * b, a1 = upper(a), a2 = a - a1, b1 = upper(b), b2 = b - b1;
+    return (enf_doubled){product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2};
+}
+
+static inline enf_doubled multiply(enf_doubled a, enf_doubled b) {
+    enf_doubled product = multiply_doubles(a.high, b.high);
+    return quick_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
+}
+
+static inline enf_doubled multiply_by(enf_doubled a, double b) {
+    enf_doubled product = multiply_doubles(a.high, b);
+    return quick_sum(product.high, product.low + a.low * b);
+}
+
+bool enf_doubled_plane_set(enf_doubled_plane *plane, const double p[3], const int64_t u[3],
+                           const int64_t v[3], const double origin[3]) {
+    double a[3], b[3], away[3], size = 0, reach = 0;
+    bool fits = true;
+    for (int i = 0; i < 3; i++) {
+        a[i] = (double)u[i];
+        b[i] = (double)v[i];
+        away[i] = origin[i] - p[i];
+        fits &= fabs(a[i]) < WHOLE_MAX && fabs(b[i]) < WHOLE_MAX && fabs(away[i]) < WHOLE_MAX;
+        reach += fabs(away[i]);
+    }
+    if (!fits) return false;
+    plane->offset = (enf_doubled){0, 0};
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        enf_doubled one = multiply_doubles(a[j], b[k]), two = multiply_doubles(a[k], b[j]);
+        double both = fabs(one.high) + fabs(two.high);
+        size = both > size ? both : size;
+        plane->normal[i] = subtract(one, two);
+        plane->offset = add(plane->offset, multiply_by(plane->normal[i], away[i]));
+    }
+    plane->size = size;
+    plane->reach = reach;
+    return true;
+}
+
+static inline enf_doubled minor(const enf_doubled_plane *a, const enf_doubled_plane *b, int i) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    return subtract(multiply(a->normal[j], b->normal[k]), multiply(a->normal[k], b->normal[j]));
+}
+
+int enf_doubled_planes_sign(const enf_doubled_plane plane[4]) {
+    const enf_doubled_plane *a = &plane[0], *b = &plane[1], *c = &plane[2], *d = &plane[3];
+    // The first three meet in at / weight: at = -(offset_b * c x a + offset_c * a x b), weight = c . (a x b).
+    enf_doubled weight = {0, 0}, value = {0, 0};
+    for (int i = 0; i < 3; i++) {
+        enf_doubled from_b = minor(c, a, i), from_c = minor(a, b, i);
+        enf_doubled at = add(multiply(b->offset, from_b), multiply(c->offset, from_c));
+        weight = add(weight, multiply(c->normal[i], from_c));
+        value = subtract(value, multiply(d->normal[i], at));
+    }
+    value = add(value, multiply(d->offset, weight));
+    double terms = a->size * b->size * c->size * d->size * (b->reach + c->reach + d->reach);
+    if (fabs(value.high) > UNSURE * terms) return value.high > 0 ? 1 : -1;
+    return 0;
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The second tier of geometry.h, between the filter and exact numbers: planes with coefficients that are
+// pairs of doubles, about a hundred bits. It tells all but the very smallest determinants from 0.
+#ifndef ENF_BUILD_DOUBLED_PLANE_H
+#define ENF_BUILD_DOUBLED_PLANE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/// The number high + low, |low| no more than half a unit in the last place of high.
+typedef struct enf_doubled {
+    double high, low;
+} enf_doubled;
+
+/// normal . (x - origin) + offset = 0
+typedef struct enf_doubled_plane {
+    enf_doubled normal[3], offset;
+    double size;  ///< no component of the normal is larger, nor what it is a difference of
+    double reach; ///< offset <= size * reach
+} enf_doubled_plane;
+
+/// The plane through p, p + u and p + v; all whole numbers. False if a difference has more bits than a
+/// double.
+bool enf_doubled_plane_set(enf_doubled_plane *plane, const double p[3], const int64_t u[3],
+                           const int64_t v[3], const double origin[3]);
+
+/// Sign of the determinant of all coefficients, or 0 if that is not certain. The origin is a point of the
+/// first plane (whose offset is not looked at).
+int enf_doubled_planes_sign(const enf_doubled_plane plane[4]);
+
+#endif
