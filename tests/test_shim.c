@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Both tetrahedralizers against arithmetic of the test's own: 128-bit integers, which are exact for small
 // coordinates.
+#include "base/exact.h"
+#include "build/tet_order.h"
+#include "oracle.h"
 #include "shim/shim.h"
 
 #include <fenv.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -33,6 +37,13 @@ static cloud new_cloud(size_t count) {
     const cloud result = {count, malloc((count + 1) * 3 * sizeof(double))};
     assert_non_null(result.points);
     return result;
+}
+
+// How many cases: `usual`, times the environment variable ENFILADE_TEST_SCALE.
+static long scaled(long usual) {
+    const char *text = getenv("ENFILADE_TEST_SCALE");
+    const double scale = text ? atof(text) : 1;
+    return scale > 0 ? (long)ceil((double)usual * scale) : usual;
 }
 
 static cloud make_lattice(int side) {
@@ -112,10 +123,11 @@ static enf_tetrahedra make(delaunay_function *delaunay, const cloud *cloud) {
     enf_error error = {0};
     const enf_status status = delaunay(cloud->points, cloud->count, &result, &error);
     if (status != ENF_OK) fail_msg("%s", error.text);
+    assert_true(enf_tetrahedra_sort(&result.corners, result.count, cloud->points, cloud->count));
     return result;
 }
 
-// Every tetrahedron positive, canonical and after its predecessor; returns six times the volume.
+// Every tetrahedron positive and canonical; returns six times the volume.
 static wide check_cells(const cloud *cloud, const enf_tetrahedra *cells) {
     wide volume = 0;
     for (size_t i = 0; i < cells->count; ++i) {
@@ -125,10 +137,6 @@ static wide check_cells(const cloud *cloud, const enf_tetrahedra *cells) {
         const wide part = find_volume(cloud->points, c);
         assert_true(part > 0);
         volume += part;
-        if (i == 0) continue;
-        int order = 0;
-        for (int k = 0; k < 4 && order == 0; ++k) order = (c[k] > c[k - 4]) - (c[k] < c[k - 4]);
-        assert_int_equal(order, 1);
     }
     return volume;
 }
@@ -278,6 +286,63 @@ static void equal_points_are_refused(void **state) {
     free(cloud.points);
 }
 
+// ------------------------------------------------------------------------------------------ predicates
+
+enum { KINDS = 6 };
+
+static double random_whole(uint64_t *state, double range) {
+    return (double)(next_random(state) % (uint64_t)(2 * range + 1)) - range;
+}
+
+// A point of a sphere of radius `radius` about the origin, rounded.
+static void random_on_sphere(uint64_t *state, double radius, double point[3]) {
+    double length = 0;
+    while (length == 0) {
+        for (int k = 0; k < 3; ++k) point[k] = random_whole(state, 1000);
+        length = sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
+    }
+    for (int k = 0; k < 3; ++k) point[k] = fmax(-two53, fmin(two53, rint(point[k] / length * radius)));
+}
+
+// Five points, on or near one sphere or plane more often than not; at most 2^53.
+static void make_case(long number, uint64_t *state, double points[5][3]) {
+    const int kind = (int)(number % KINDS);
+    const double size = ldexp(1, (int)(next_random(state) % 54)), shift = random_whole(state, two53 - size);
+    for (int i = 0; i < 5; ++i) {
+        double *point = points[i];
+        for (int k = 0; k < 3; ++k) {
+            if (kind == 0) point[k] = random_whole(state, size);                // any
+            if (kind == 1) point[k] = floor(random_whole(state, 2) * size / 2); // a small lattice
+            if (kind == 2) point[k] = next_random(state) % 2 ? size : -size;    // a cube
+            if (kind == 3) point[k] = next_random(state) % 2 ? two53 : random_whole(state, 3) - two53 + 3;
+        }
+        if (kind >= 4) random_on_sphere(state, size, point);
+        if (kind == 5 && size < two53) point[next_random(state) % 3] += 1 - (double)(next_random(state) % 3);
+        if (kind == 0 && i == 4 && number % 4 == 0) // near a plane
+            for (int k = 0; k < 3; ++k) point[k] = floor((points[0][k] + points[1][k] + points[2][k]) / 3);
+        if (kind < 3 && number % 5 == 0) // far away
+            for (int k = 0; k < 3; ++k) point[k] = fmax(-two53, fmin(two53, point[k] + (k ? shift : -shift)));
+    }
+}
+
+static void predicates_agree_with_cgal(void **state) {
+    (void)state;
+    uint64_t random = 5;
+    long zeros[2] = {0}, count = scaled(1000000) * KINDS;
+    for (long i = 0; i < count; ++i) {
+        double p[5][3];
+        make_case(i, &random, p);
+        const int side = enf_points_side_of_sphere(p[0], p[1], p[2], p[3], p[4]);
+        if (side != oracle_side_of_sphere(p[0], p[1], p[2], p[3], p[4])) fail_msg("case %ld: sphere", i);
+        zeros[0] += side == 0;
+        if (i % 5) continue; // this oracle takes its time
+        const int orientation = enf_points_orient(p[0], p[1], p[2], p[3]);
+        if (orientation != oracle_orient(p[0], p[1], p[2], p[3])) fail_msg("case %ld: orientation", i);
+        zeros[1] += orientation == 0;
+    }
+    assert_true(zeros[0] > count / 100 && zeros[1] > count / 500);
+}
+
 static int compare_corners(const void *a, const void *b) {
     const int32_t *p = a, *q = b;
     for (int k = 0; k < 4; ++k)
@@ -328,6 +393,31 @@ static void cgal_does_not_depend_on_the_order_of_points(void **state) {
         check_shuffled(make_lattice(6), seed);
         check_shuffled(make_random(400, 4, seed), seed);
         check_shuffled(make_random(400, two53, seed), seed);
+    }
+}
+
+static void the_order_of_tetrahedra_depends_on_the_set_only(void **state) {
+    (void)state;
+    static const int even[12][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2},
+                                    {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 1, 3, 0},
+                                    {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 2, 1, 0}};
+    for (uint64_t seed = 1; seed <= 10; ++seed) {
+        const double range = seed % 2 ? 6 : two53; // with few places, many tetrahedra share one
+        cloud cloud = make_random(400, range, seed);
+        const enf_tetrahedra expected = make(enf_shim_delaunay_cgal, &cloud);
+        int32_t(*found)[4] = malloc(expected.count * sizeof *found);
+        uint64_t random = seed;
+        for (size_t i = 0; i < expected.count; ++i) { // at random among those before it, turned at random
+            const size_t k = next_random(&random) % (i + 1);
+            const int *turn = even[next_random(&random) % 12];
+            memcpy(found[i], found[k], sizeof *found);
+            for (int j = 0; j < 4; ++j) found[k][j] = expected.corners[i][turn[j]];
+        }
+        assert_true(enf_tetrahedra_sort(&found, expected.count, cloud.points, cloud.count));
+        assert_memory_equal(found, expected.corners, expected.count * sizeof *found);
+        free(found);
+        free(expected.corners);
+        free(cloud.points);
     }
 }
 
@@ -386,7 +476,9 @@ int main(void) {
         cmocka_unit_test(flat_worlds_are_refused),
         cmocka_unit_test(almost_flat_worlds_are_tiled_or_refused),
         cmocka_unit_test(equal_points_are_refused),
+        cmocka_unit_test(predicates_agree_with_cgal),
         cmocka_unit_test(cgal_does_not_depend_on_the_order_of_points),
+        cmocka_unit_test(the_order_of_tetrahedra_depends_on_the_set_only),
         cmocka_unit_test(same_points_give_the_same_array),
         cmocka_unit_test(rounding_mode_comes_back),
         cmocka_unit_test(a_build_without_tetgen_says_so),

@@ -90,7 +90,7 @@ static enf_status tetrahedralize(kitchen *k) {
     status = tetgen ? enf_shim_delaunay_tetgen(mesh->points, mesh->point_count, &made, k->error)
                     : enf_shim_delaunay_cgal(mesh->points, mesh->point_count, &made, k->error);
     if (status != ENF_OK) return status;
-    if (!enf_tetrahedra_sort(made.corners, made.count, mesh->points, mesh->point_count)) {
+    if (!enf_tetrahedra_sort(&made.corners, made.count, mesh->points, mesh->point_count)) {
         free(made.corners);
         return enf_fail_memory(k->error, "the tetrahedra");
     }
