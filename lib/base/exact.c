@@ -74,6 +74,14 @@ int enf_points_orient(const double a[3], const double b[3], const double c[3], c
     return orient_exactly(a, b, c, d);
 }
 
+bool enf_points_collinear(const double a[3], const double b[3], const double c[3]) {
+    int64_t u[3], v[3];
+    subtract_points(b, a, u);
+    subtract_points(c, a, v);
+    return minor_of(u[1], u[2], v[1], v[2]) == 0 && minor_of(u[2], u[0], v[2], v[0]) == 0 &&
+           minor_of(u[0], u[1], v[0], v[1]) == 0;
+}
+
 // ---------------------------------------------------------------------------------------------- spheres
 
 /// Whatever the points, the determinant below is not off by more: its magnitude is at most 72 * 2^270.

@@ -8,6 +8,7 @@
 #include "base/timer.h"
 #include "build/arrangement.h"
 #include "build/connect.h"
+#include "build/delaunay.h"
 #include "build/hairline.h"
 #include "build/split.h"
 #include "build/tet_order.h"
@@ -88,7 +89,7 @@ static enf_status tetrahedralize(kitchen *k) {
     enf_tetrahedra made = {0};
     bool tetgen = k->options->tetrahedralizer == ENF_TETRAHEDRALIZER_TETGEN;
     status = tetgen ? enf_shim_delaunay_tetgen(mesh->points, mesh->point_count, &made, k->error)
-                    : enf_shim_delaunay_cgal(mesh->points, mesh->point_count, &made, k->error);
+                    : enf_delaunay(mesh->points, mesh->point_count, &made, k->error);
     if (status != ENF_OK) return status;
     if (!enf_tetrahedra_sort(&made.corners, made.count, mesh->points, mesh->point_count)) {
         free(made.corners);

@@ -45,25 +45,34 @@ static void deal_by_digit(const placed *from, placed *to, size_t count, int digi
     for (size_t i = 0; i < count; i++) to[next[from[i].key >> shift & mask]++] = from[i];
 }
 
+bool enf_curve_order(const double *points, size_t count, int32_t *order) {
+    placed *now = enf_array_new(count, sizeof *now), *then = enf_array_new(count, sizeof *then);
+    const bool good = now && then;
+    if (good) {
+        for (size_t i = 0; i < count; i++) now[i] = (placed){place_of(points + 3 * i), (int32_t)i};
+        for (int digit = 0; digit < DIGITS; digit++) {
+            deal_by_digit(now, then, count, digit);
+            placed *swap = now;
+            now = then;
+            then = swap;
+        }
+        for (size_t i = 0; i < count; i++) order[i] = now[i].point;
+    }
+    free(now);
+    free(then);
+    return good;
+}
+
 /// Each point's rank along the curve (free() it), or null without memory.
 static int32_t *rank_points(const double *points, size_t count) {
-    placed *order = enf_array_new(count, sizeof *order), *other = enf_array_new(count, sizeof *other);
-    int32_t *rank = enf_array_new(count, sizeof *rank);
-    if (order && other && rank) {
-        for (size_t i = 0; i < count; i++) order[i] = (placed){place_of(points + 3 * i), (int32_t)i};
-        for (int digit = 0; digit < DIGITS; digit++) {
-            deal_by_digit(order, other, count, digit);
-            placed *swap = order;
-            order = other;
-            other = swap;
-        }
-        for (size_t i = 0; i < count; i++) rank[order[i].point] = (int32_t)i;
+    int32_t *order = enf_array_new(count, sizeof *order), *rank = enf_array_new(count, sizeof *rank);
+    if (order && rank && enf_curve_order(points, count, order)) {
+        for (size_t i = 0; i < count; i++) rank[order[i]] = (int32_t)i;
     } else {
         free(rank);
         rank = NULL;
     }
     free(order);
-    free(other);
     return rank;
 }
 

@@ -5,6 +5,9 @@
 
 #include "enfilade/base.h"
 
+/// The numbers of the points (xyz, grid steps) in order along a space-filling curve. False without memory.
+bool enf_curve_order(const double *points, size_t count, int32_t *order);
+
 /// Sorts tetrahedra along a space-filling curve through their points (xyz, grid steps), those at the same
 /// place by their corners: what the later stages touch together lies together. Corners are turned so that the
 /// lowest comes first and the second lowest next; orientations stay. The same set of tetrahedra becomes the

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Incremental insertion after A. Bowyer and D. F. Watson (both 1981): the tetrahedra whose spheres hold the
+// new point are taken out, and the hole is filled with tetrahedra from its rim to the point. Points come in
+// rounds, each along a curve (N. Amenta, S. Choi, G. Rote, "Incremental constructions con BRIO", 2003), so
+// the walk to the next point is short. Outside each triangle of the hull is a tetrahedron with a corner at
+// infinity. Cospherical points are told apart by the perturbation of O. Devillers and M. Teillaud,
+// "Perturbations for Delaunay and weighted Delaunay 3D triangulations" (2011), as in CGAL: the result depends
+// on the set of points only, and nothing is flat.
+#include "build/delaunay.h"
+
+#include "base/array.h"
+#include "base/exact.h"
+#include "base/hash.h"
+#include "build/tet_order.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { AT_INFINITY = -1, SPARE = -2 }; ///< in place of corners; the latter in that of the first
+
+/// A face of the hole, as seen from inside (counter-clockwise), and the face on its other side.
+typedef struct rim_face {
+    int32_t corner[3], beyond;
+} rim_face;
+
+/// An edge of the hole, and the new face there that waits for its neighbour; -1: nothing is here.
+typedef struct rim_edge {
+    int32_t low, high, face;
+} rim_edge;
+
+/// Faces have numbers, too: 4 * tetrahedron + the corner that is opposite.
+typedef struct triangulation {
+    const double *points;
+    int32_t (*corner)[4]; ///< positively oriented, also when a point beyond the hull is put for infinity
+    int32_t (*next)[4];   ///< for each face, the same face of the neighbour
+    uint32_t *seen;       ///< in_hole or not_in_hole as of now; other values are of earlier points
+    size_t count, capacity, next_capacity, seen_capacity;
+
+    uint32_t in_hole, not_in_hole;
+    int32_t *hole; ///< tetrahedra
+    size_t hole_count, hole_capacity;
+    rim_face *rim;
+    size_t rim_count, rim_capacity;
+    rim_edge *edges; ///< open hashing
+    size_t edges_mask, edges_capacity;
+    int32_t *spare; ///< tetrahedra that are none
+    size_t spare_count, spare_capacity;
+    int32_t last; ///< a tetrahedron at the last point
+} triangulation;
+
+/// The corners of each face, counter-clockwise as seen from inside.
+static const int face_corners[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
+
+static void free_triangulation(triangulation *d) {
+    free(d->corner);
+    free(d->next);
+    free(d->seen);
+    free(d->hole);
+    free(d->rim);
+    free(d->edges);
+    free(d->spare);
+}
+
+// ---------------------------------------------------------------------------------------------- predicates
+
+static const double *point_at(const triangulation *d, int32_t i) {
+    return d->points + 3 * (size_t)i;
+}
+
+static int orient(const triangulation *d, int32_t a, int32_t b, int32_t c, int32_t point) {
+    return enf_points_orient(point_at(d, a), point_at(d, b), point_at(d, c), point_at(d, point));
+}
+
+/// > 0 if the point is on the inner side of the face of a finite tetrahedron or, if the face is one of the
+/// hull and the corner is at infinity, beyond the hull.
+static int side_of_face(const triangulation *d, const int32_t corner[4], int face, int32_t point) {
+    const int *at = face_corners[face];
+    return orient(d, corner[at[0]], corner[at[1]], corner[at[2]], point);
+}
+
+/// Lexicographic.
+static bool is_before(const triangulation *d, int32_t a, int32_t b) {
+    const double *p = point_at(d, a), *q = point_at(d, b);
+    for (int k = 0; k < 2; k++) {
+        if (p[k] != q[k]) return p[k] < q[k];
+    }
+    return p[2] < q[2];
+}
+
+/// Does the sphere hold a point that lies on it? The last two of the five points decide (see the paper).
+static bool perturbed_sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
+    const int32_t five[5] = {corner[0], corner[1], corner[2], corner[3], point};
+    int last = -1;
+    for (int round = 0; round < 2; round++) {
+        const int before = last;
+        last = before == 0;
+        for (int k = 0; k < 5; k++) {
+            if (k != before && is_before(d, five[last], five[k])) last = k;
+        }
+        if (last == 4) return false;
+        int32_t turned[4];
+        memcpy(turned, corner, sizeof turned);
+        turned[last] = point;
+        const int side = orient(d, turned[0], turned[1], turned[2], turned[3]);
+        if (side != 0) return side > 0;
+    }
+    return false;
+}
+
+static bool sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
+    const int side =
+        enf_points_side_of_sphere(point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, corner[2]),
+                                  point_at(d, corner[3]), point_at(d, point));
+    return side > 0 || (side == 0 && perturbed_sphere_holds(d, corner, point));
+}
+
+static int find_infinity(const int32_t corner[4]) {
+    for (int k = 0; k < 4; k++) {
+        if (corner[k] == AT_INFINITY) return k;
+    }
+    return -1;
+}
+
+/// Must the tetrahedron go when the point comes? At infinity the sphere is the half-space beyond the hull
+/// and, in the hull's plane, the circle in which that meets the sphere of the tetrahedron inside.
+static bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
+    const int infinity = find_infinity(d->corner[t]);
+    if (infinity < 0) return sphere_holds(d, d->corner[t], point);
+    const int side = side_of_face(d, d->corner[t], infinity, point);
+    return side > 0 || (side == 0 && sphere_holds(d, d->corner[d->next[t][infinity] / 4], point));
+}
+
+// ---------------------------------------------------------------------------------------------- insertion
+
+/// A tetrahedron in conflict with the point: walks through faces behind which the point is. Delaunay
+/// tetrahedra cannot lead round in circles (H. Edelsbrunner, 1990).
+static int32_t find_conflict(const triangulation *d, int32_t point) {
+    int32_t t = d->last;
+    const int infinity = find_infinity(d->corner[t]);
+    if (infinity >= 0) t = d->next[t][infinity] / 4;
+    for (int32_t came = -1;;) {
+        int k = 0;
+        for (; k < 4; k++) {
+            if (d->next[t][k] == came) continue;
+            if (side_of_face(d, d->corner[t], k, point) < 0) break;
+        }
+        if (k == 4) return t;
+        came = 4 * t + k;
+        t = d->next[t][k] / 4;
+        if (find_infinity(d->corner[t]) >= 0) return t;
+    }
+}
+
+/// The tetrahedra in conflict, which are connected, and the faces around them. False without memory.
+static bool dig_hole(triangulation *d, int32_t first, int32_t point) {
+    d->hole_count = d->rim_count = 0;
+    d->hole[d->hole_count++] = first;
+    d->seen[first] = d->in_hole;
+    for (size_t i = 0; i < d->hole_count; i++) {
+        if (!enf_array_reserve(d->hole, d->hole_capacity, d->hole_count + 4)) return false;
+        if (!enf_array_reserve(d->rim, d->rim_capacity, d->rim_count + 4)) return false;
+        const int32_t t = d->hole[i], *corner = d->corner[t];
+        for (int k = 0; k < 4; k++) {
+            const int32_t beyond = d->next[t][k], u = beyond / 4;
+            if (d->seen[u] == d->in_hole) continue;
+            if (d->seen[u] != d->not_in_hole) {
+                const bool conflict = is_in_conflict(d, u, point);
+                d->seen[u] = conflict ? d->in_hole : d->not_in_hole;
+                if (conflict) d->hole[d->hole_count++] = u;
+                if (conflict) continue;
+            }
+            const int *at = face_corners[k];
+            d->rim[d->rim_count++] = (rim_face){{corner[at[0]], corner[at[1]], corner[at[2]]}, beyond};
+        }
+    }
+    return true;
+}
+
+/// Room for new tetrahedra on the rim, and a table of its edges, empty. False without memory.
+static bool prepare_filling(triangulation *d) {
+    size_t slots = 64;
+    while (slots < 3 * d->rim_count) slots *= 2; // two edges for three faces' corners
+    const size_t wanted = d->count + d->rim_count;
+    if (!enf_array_reserve(d->edges, d->edges_capacity, slots) ||
+        !enf_array_reserve(d->spare, d->spare_capacity, d->spare_count + d->hole_count) ||
+        !enf_array_reserve(d->corner, d->capacity, wanted) ||
+        !enf_array_reserve(d->next, d->next_capacity, wanted) ||
+        !enf_array_reserve(d->seen, d->seen_capacity, wanted))
+        return false;
+    memset(d->edges, 0xff, slots * sizeof *d->edges);
+    d->edges_mask = slots - 1;
+    return true;
+}
+
+static void join_faces(triangulation *d, int32_t a, int32_t b) {
+    d->next[a / 4][a % 4] = b;
+    d->next[b / 4][b % 4] = a;
+}
+
+/// Joins a new face, which has this edge of the rim, to the other new face there, or lets it wait for that.
+static void join_at_edge(triangulation *d, int32_t from, int32_t to, int32_t face) {
+    const int32_t low = from < to ? from : to, high = from < to ? to : from;
+    const uint64_t key = (uint64_t)(uint32_t)low << 32 | (uint32_t)high;
+    size_t slot = (key * UINT64_C(0x9E3779B97F4A7C15) >> 32) & d->edges_mask;
+    for (; d->edges[slot].face >= 0; slot = (slot + 1) & d->edges_mask) {
+        if (d->edges[slot].low != low || d->edges[slot].high != high) continue;
+        join_faces(d, d->edges[slot].face, face);
+        return;
+    }
+    d->edges[slot] = (rim_edge){low, high, face};
+}
+
+static int32_t take_slot(triangulation *d) {
+    if (d->hole_count > 0) return d->hole[--d->hole_count];
+    if (d->spare_count > 0) return d->spare[--d->spare_count];
+    d->seen[d->count] = 0;
+    return (int32_t)d->count++;
+}
+
+static void fill_hole(triangulation *d, int32_t point) {
+    for (size_t i = 0; i < d->rim_count; i++) {
+        const rim_face *face = &d->rim[i];
+        const int32_t t = take_slot(d), *corner = face->corner;
+        memcpy(d->corner[t], corner, sizeof face->corner);
+        d->corner[t][3] = point;
+        join_faces(d, 4 * t + 3, face->beyond);
+        for (int k = 0; k < 3; k++) join_at_edge(d, corner[(k + 1) % 3], corner[(k + 2) % 3], 4 * t + k);
+        d->last = t;
+    }
+    while (d->hole_count > 0) {
+        const int32_t t = d->hole[--d->hole_count];
+        d->corner[t][0] = SPARE;
+        d->spare[d->spare_count++] = t;
+    }
+}
+
+static bool are_equal(const triangulation *d, int32_t a, int32_t b) {
+    const double *p = point_at(d, a), *q = point_at(d, b);
+    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+}
+
+static bool is_corner(const triangulation *d, const int32_t corner[4], int32_t point) {
+    for (int k = 0; k < 4; k++) {
+        if (corner[k] != AT_INFINITY && are_equal(d, corner[k], point)) return true;
+    }
+    return false;
+}
+
+static enf_status fail_memory(enf_error *error) {
+    return enf_fail_memory(error, "the Delaunay tetrahedra");
+}
+
+static enf_status insert_point(triangulation *d, int32_t point, enf_error *error) {
+    const int32_t first = find_conflict(d, point);
+    if (is_corner(d, d->corner[first], point))
+        return enf_fail(error, ENF_BAD_INPUT, "point %d is equal to another one; weld them first",
+                        (int)point);
+    d->in_hole += 2;
+    d->not_in_hole += 2;
+    if (!dig_hole(d, first, point) || !prepare_filling(d)) return fail_memory(error);
+    fill_hole(d, point);
+    return ENF_OK;
+}
+
+// ---------------------------------------------------------------------------------------------- all of them
+
+enum { ROUND_BITS = 3, ROUNDS_MAX = 21 }; ///< each round has eight times the points of the one before
+
+/// In which round from the last a point comes, at random but always the same.
+static int round_of(int32_t point) {
+    const uint64_t bits = enf_hash_mix((uint64_t)point + 1);
+    return __builtin_ctzll(bits | UINT64_C(1) << 63) / ROUND_BITS;
+}
+
+/// Where the points come that are along the curve so far: the last round last. False without memory.
+static bool order_points(const double *points, size_t count, int32_t *order) {
+    int32_t *along = enf_array_new(count, sizeof *along);
+    if (!along || !enf_curve_order(points, count, along)) {
+        free(along);
+        return false;
+    }
+    size_t next[ROUNDS_MAX + 2] = {0};
+    for (size_t i = 0; i < count; i++) next[ROUNDS_MAX - round_of((int32_t)i) + 1]++;
+    for (int r = 0; r < ROUNDS_MAX; r++) next[r + 1] += next[r];
+    for (size_t i = 0; i < count; i++) order[next[ROUNDS_MAX - round_of(along[i])]++] = along[i];
+    free(along);
+    return true;
+}
+
+/// Can the point be one more corner of the first tetrahedron?
+static bool spans(const triangulation *d, const int32_t *corner, int count, int32_t point) {
+    if (count == 3) return orient(d, corner[0], corner[1], corner[2], point) != 0;
+    if (count == 1) return !are_equal(d, corner[0], point);
+    return !enf_points_collinear(point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, point));
+}
+
+/// Brings four points to the front that are not in one plane.
+static enf_status choose_first(const triangulation *d, int32_t *order, size_t count, enf_error *error) {
+    for (int have = 1; have < 4; have++) {
+        size_t i = (size_t)have;
+        while (i < count && !spans(d, order, have, order[i])) i++;
+        if (i >= count)
+            return enf_fail(error, ENF_BAD_INPUT, "all points lie in one plane; a world needs some volume");
+        const int32_t chosen = order[i];
+        order[i] = order[have];
+        order[have] = chosen;
+    }
+    if (orient(d, order[0], order[1], order[2], order[3]) < 0) {
+        const int32_t swap = order[0];
+        order[0] = order[1];
+        order[1] = swap;
+    }
+    return ENF_OK;
+}
+
+/// One tetrahedron, and four around it with a corner at infinity: they fill the hole outside.
+static bool begin(triangulation *d, const int32_t first[4], size_t point_count) {
+    const size_t likely = 8 * point_count; // with those at infinity; more are made room for when they come
+    if (!enf_array_reserve(d->corner, d->capacity, likely) ||
+        !enf_array_reserve(d->next, d->next_capacity, likely) ||
+        !enf_array_reserve(d->seen, d->seen_capacity, likely) ||
+        !enf_array_reserve(d->hole, d->hole_capacity, 64) || !enf_array_reserve(d->rim, d->rim_capacity, 64))
+        return false;
+    memcpy(d->corner[0], first, sizeof *d->corner);
+    d->seen[0] = 0;
+    d->count = 1;
+    for (int k = 0; k < 4; k++) {
+        const int *at = face_corners[k];
+        d->rim[d->rim_count++] = (rim_face){{first[at[0]], first[at[2]], first[at[1]]}, k};
+    }
+    if (!prepare_filling(d)) return false;
+    fill_hole(d, AT_INFINITY);
+    d->not_in_hole = 1;
+    return true;
+}
+
+/// The finite tetrahedra; takes the array of corners.
+static void take_tetrahedra(triangulation *d, enf_tetrahedra *out) {
+    size_t count = 0;
+    for (size_t t = 0; t < d->count; t++) {
+        if (d->corner[t][0] == SPARE || find_infinity(d->corner[t]) >= 0) continue;
+        if (count != t) memcpy(d->corner[count], d->corner[t], sizeof *d->corner);
+        count++;
+    }
+    void *trimmed = realloc(d->corner, count * sizeof *d->corner);
+    *out = (enf_tetrahedra){.corners = trimmed ? trimmed : d->corner, .count = count};
+    d->corner = NULL;
+}
+
+enf_status enf_delaunay(const double *points, size_t point_count, enf_tetrahedra *out, enf_error *error) {
+    *out = (enf_tetrahedra){0};
+    if (point_count > INT32_MAX)
+        return enf_fail(error, ENF_NO_RESOURCES, "%zu points are more than this build can number",
+                        point_count);
+    triangulation d = {.points = points};
+    int32_t *order = enf_array_new(point_count, sizeof *order);
+    enf_status status = ENF_OK;
+    if (!order || !order_points(points, point_count, order)) status = fail_memory(error);
+    if (!status) status = choose_first(&d, order, point_count, error);
+    if (!status && !begin(&d, order, point_count)) status = fail_memory(error);
+    for (size_t i = 4; i < point_count && !status; i++) status = insert_point(&d, order[i], error);
+    if (!status) take_tetrahedra(&d, out);
+    free(order);
+    free_triangulation(&d);
+    return status;
+}
