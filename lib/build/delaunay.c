@@ -18,16 +18,6 @@
 
 enum { AT_INFINITY = -1, SPARE = -2 }; ///< in place of corners; the latter in that of the first
 
-/// A face of the hole, as seen from inside (counter-clockwise), and the face on its other side.
-typedef struct rim_face {
-    int32_t corner[3], beyond;
-} rim_face;
-
-/// An edge of the hole, and the new face there that waits for its neighbour; -1: nothing is here.
-typedef struct rim_edge {
-    int32_t low, high, face;
-} rim_edge;
-
 /// Faces have numbers, too: 4 * tetrahedron + the corner that is opposite.
 typedef struct triangulation {
     const double *points;
@@ -39,10 +29,8 @@ typedef struct triangulation {
     uint32_t in_hole, not_in_hole;
     int32_t *hole; ///< tetrahedra
     size_t hole_count, hole_capacity;
-    rim_face *rim;
+    int32_t *rim; ///< faces of tetrahedra in the hole with none of them beyond
     size_t rim_count, rim_capacity;
-    rim_edge *edges; ///< open hashing
-    size_t edges_mask, edges_capacity;
     int32_t *spare; ///< tetrahedra that are none
     size_t spare_count, spare_capacity;
     int32_t last; ///< a tetrahedron at the last point
@@ -51,13 +39,15 @@ typedef struct triangulation {
 /// The corners of each face, counter-clockwise as seen from inside.
 static const int face_corners[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
 
+/// Where in its list a corner of a face is.
+static const int8_t corner_places[4][4] = {{-1, 0, 2, 1}, {0, -1, 1, 2}, {0, 2, -1, 1}, {0, 1, 2, -1}};
+
 static void free_triangulation(triangulation *d) {
     free(d->corner);
     free(d->next);
     free(d->seen);
     free(d->hole);
     free(d->rim);
-    free(d->edges);
     free(d->spare);
 }
 
@@ -78,31 +68,21 @@ static int side_of_face(const triangulation *d, const int32_t corner[4], int fac
     return orient(d, corner[at[0]], corner[at[1]], corner[at[2]], point);
 }
 
-/// Lexicographic.
-static bool is_before(const triangulation *d, int32_t a, int32_t b) {
-    const double *p = point_at(d, a), *q = point_at(d, b);
-    for (int k = 0; k < 2; k++) {
-        if (p[k] != q[k]) return p[k] < q[k];
-    }
-    return p[2] < q[2];
-}
-
 /// Does the sphere hold a point that lies on it? The last two of the five points decide (see the paper).
 static bool perturbed_sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
-    const int32_t five[5] = {corner[0], corner[1], corner[2], corner[3], point};
-    int last = -1;
+    int32_t before = INT32_MAX;
     for (int round = 0; round < 2; round++) {
-        const int before = last;
-        last = before == 0;
-        for (int k = 0; k < 5; k++) {
-            if (k != before && is_before(d, five[last], five[k])) last = k;
+        int last = -1;
+        for (int k = 0; k < 4; k++) {
+            if (corner[k] < before && (last < 0 || corner[k] > corner[last])) last = k;
         }
-        if (last == 4) return false;
+        if (point < before && point > corner[last]) return false;
         int32_t turned[4];
         memcpy(turned, corner, sizeof turned);
         turned[last] = point;
         const int side = orient(d, turned[0], turned[1], turned[2], turned[3]);
         if (side != 0) return side > 0;
+        before = corner[last];
     }
     return false;
 }
@@ -114,18 +94,20 @@ static bool sphere_holds(const triangulation *d, const int32_t corner[4], int32_
     return side > 0 || (side == 0 && perturbed_sphere_holds(d, corner, point));
 }
 
-static int find_infinity(const int32_t corner[4]) {
-    for (int k = 0; k < 4; k++) {
-        if (corner[k] == AT_INFINITY) return k;
-    }
-    return -1;
+static bool is_finite(const int32_t corner[4]) {
+    return (corner[0] | corner[1] | corner[2] | corner[3]) >= 0;
+}
+
+/// Which corner is the point (or at infinity)? One of them is.
+static int find_corner(const int32_t corner[4], int32_t point) {
+    return (corner[1] == point) + 2 * (corner[2] == point) + 3 * (corner[3] == point);
 }
 
 /// Must the tetrahedron go when the point comes? At infinity the sphere is the half-space beyond the hull
 /// and, in the hull's plane, the circle in which that meets the sphere of the tetrahedron inside.
 static bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
-    const int infinity = find_infinity(d->corner[t]);
-    if (infinity < 0) return sphere_holds(d, d->corner[t], point);
+    if (is_finite(d->corner[t])) return sphere_holds(d, d->corner[t], point);
+    const int infinity = find_corner(d->corner[t], AT_INFINITY);
     const int side = side_of_face(d, d->corner[t], infinity, point);
     return side > 0 || (side == 0 && sphere_holds(d, d->corner[d->next[t][infinity] / 4], point));
 }
@@ -136,8 +118,7 @@ static bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
 /// tetrahedra cannot lead round in circles (H. Edelsbrunner, 1990).
 static int32_t find_conflict(const triangulation *d, int32_t point) {
     int32_t t = d->last;
-    const int infinity = find_infinity(d->corner[t]);
-    if (infinity >= 0) t = d->next[t][infinity] / 4;
+    if (!is_finite(d->corner[t])) t = d->next[t][find_corner(d->corner[t], AT_INFINITY)] / 4;
     for (int32_t came = -1;;) {
         int k = 0;
         for (; k < 4; k++) {
@@ -147,7 +128,7 @@ static int32_t find_conflict(const triangulation *d, int32_t point) {
         if (k == 4) return t;
         came = 4 * t + k;
         t = d->next[t][k] / 4;
-        if (find_infinity(d->corner[t]) >= 0) return t;
+        if (!is_finite(d->corner[t])) return t;
     }
 }
 
@@ -159,9 +140,9 @@ static bool dig_hole(triangulation *d, int32_t first, int32_t point) {
     for (size_t i = 0; i < d->hole_count; i++) {
         if (!enf_array_reserve(d->hole, d->hole_capacity, d->hole_count + 4)) return false;
         if (!enf_array_reserve(d->rim, d->rim_capacity, d->rim_count + 4)) return false;
-        const int32_t t = d->hole[i], *corner = d->corner[t];
+        const int32_t t = d->hole[i];
         for (int k = 0; k < 4; k++) {
-            const int32_t beyond = d->next[t][k], u = beyond / 4;
+            const int32_t u = d->next[t][k] / 4;
             if (d->seen[u] == d->in_hole) continue;
             if (d->seen[u] != d->not_in_hole) {
                 const bool conflict = is_in_conflict(d, u, point);
@@ -169,27 +150,19 @@ static bool dig_hole(triangulation *d, int32_t first, int32_t point) {
                 if (conflict) d->hole[d->hole_count++] = u;
                 if (conflict) continue;
             }
-            const int *at = face_corners[k];
-            d->rim[d->rim_count++] = (rim_face){{corner[at[0]], corner[at[1]], corner[at[2]]}, beyond};
+            d->rim[d->rim_count++] = 4 * t + k;
         }
     }
     return true;
 }
 
-/// Room for new tetrahedra on the rim, and a table of its edges, empty. False without memory.
+/// Room for as many new tetrahedra as the rim has faces. False without memory.
 static bool prepare_filling(triangulation *d) {
-    size_t slots = 64;
-    while (slots < 3 * d->rim_count) slots *= 2; // two edges for three faces' corners
     const size_t wanted = d->count + d->rim_count;
-    if (!enf_array_reserve(d->edges, d->edges_capacity, slots) ||
-        !enf_array_reserve(d->spare, d->spare_capacity, d->spare_count + d->hole_count) ||
-        !enf_array_reserve(d->corner, d->capacity, wanted) ||
-        !enf_array_reserve(d->next, d->next_capacity, wanted) ||
-        !enf_array_reserve(d->seen, d->seen_capacity, wanted))
-        return false;
-    memset(d->edges, 0xff, slots * sizeof *d->edges);
-    d->edges_mask = slots - 1;
-    return true;
+    return enf_array_reserve(d->spare, d->spare_capacity, d->spare_count + d->hole_count) &&
+           enf_array_reserve(d->corner, d->capacity, wanted) &&
+           enf_array_reserve(d->next, d->next_capacity, wanted) &&
+           enf_array_reserve(d->seen, d->seen_capacity, wanted);
 }
 
 static void join_faces(triangulation *d, int32_t a, int32_t b) {
@@ -197,53 +170,53 @@ static void join_faces(triangulation *d, int32_t a, int32_t b) {
     d->next[b / 4][b % 4] = a;
 }
 
-/// Joins a new face, which has this edge of the rim, to the other new face there, or lets it wait for that.
-static void join_at_edge(triangulation *d, int32_t from, int32_t to, int32_t face) {
-    const int32_t low = from < to ? from : to, high = from < to ? to : from;
-    const uint64_t key = (uint64_t)(uint32_t)low << 32 | (uint32_t)high;
-    size_t slot = (key * UINT64_C(0x9E3779B97F4A7C15) >> 32) & d->edges_mask;
-    for (; d->edges[slot].face >= 0; slot = (slot + 1) & d->edges_mask) {
-        if (d->edges[slot].low != low || d->edges[slot].high != high) continue;
-        join_faces(d, d->edges[slot].face, face);
-        return;
-    }
-    d->edges[slot] = (rim_edge){low, high, face};
-}
-
 static int32_t take_slot(triangulation *d) {
-    if (d->hole_count > 0) return d->hole[--d->hole_count];
     if (d->spare_count > 0) return d->spare[--d->spare_count];
     d->seen[d->count] = 0;
     return (int32_t)d->count++;
 }
 
+/// The tetrahedron between a face of the rim and the point. Where the face was joined to what is beyond, it
+/// is left behind, as -1 - its number.
+static void add_tetrahedron(triangulation *d, int32_t face, int32_t point) {
+    const int32_t t = take_slot(d), *corner = d->corner[face / 4], beyond = d->next[face / 4][face % 4];
+    const int *at = face_corners[face % 4];
+    for (int k = 0; k < 3; k++) {
+        d->corner[t][k] = corner[at[k]];
+        d->next[t][k] = -1;
+    }
+    d->corner[t][3] = point;
+    join_faces(d, 4 * t + 3, beyond);
+    d->next[face / 4][face % 4] = -1 - t;
+    d->last = t;
+}
+
+/// Joins the new tetrahedron at a face of the rim to the other one at each edge of that: turns around the
+/// edge through the hole until the rim comes again.
+static void join_tetrahedron(triangulation *d, int32_t face) {
+    const int *at = face_corners[face % 4];
+    const int32_t t = -1 - d->next[face / 4][face % 4], *corner = d->corner[t];
+    for (int k = 0; k < 3; k++) {
+        if (d->next[t][k] >= 0) continue;
+        const int32_t from = corner[(k + 1) % 3], to = corner[(k + 2) % 3];
+        int32_t u = face / 4, came = face % 4, leave = at[k];
+        for (int32_t next; (next = d->next[u][leave]) >= 0;) {
+            u = next / 4;
+            came = next % 4;
+            leave = 6 - came - find_corner(d->corner[u], from) - find_corner(d->corner[u], to);
+        }
+        const int32_t other = -1 - d->next[u][leave];
+        join_faces(d, 4 * t + k, 4 * other + corner_places[leave][came]);
+    }
+}
+
 static void fill_hole(triangulation *d, int32_t point) {
-    for (size_t i = 0; i < d->rim_count; i++) {
-        const rim_face *face = &d->rim[i];
-        const int32_t t = take_slot(d), *corner = face->corner;
-        memcpy(d->corner[t], corner, sizeof face->corner);
-        d->corner[t][3] = point;
-        join_faces(d, 4 * t + 3, face->beyond);
-        for (int k = 0; k < 3; k++) join_at_edge(d, corner[(k + 1) % 3], corner[(k + 2) % 3], 4 * t + k);
-        d->last = t;
+    for (size_t i = 0; i < d->rim_count; i++) add_tetrahedron(d, d->rim[i], point);
+    for (size_t i = 0; i < d->rim_count; i++) join_tetrahedron(d, d->rim[i]);
+    for (size_t i = 0; i < d->hole_count; i++) {
+        d->corner[d->hole[i]][0] = SPARE;
+        d->spare[d->spare_count++] = d->hole[i];
     }
-    while (d->hole_count > 0) {
-        const int32_t t = d->hole[--d->hole_count];
-        d->corner[t][0] = SPARE;
-        d->spare[d->spare_count++] = t;
-    }
-}
-
-static bool are_equal(const triangulation *d, int32_t a, int32_t b) {
-    const double *p = point_at(d, a), *q = point_at(d, b);
-    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
-}
-
-static bool is_corner(const triangulation *d, const int32_t corner[4], int32_t point) {
-    for (int k = 0; k < 4; k++) {
-        if (corner[k] != AT_INFINITY && are_equal(d, corner[k], point)) return true;
-    }
-    return false;
 }
 
 static enf_status fail_memory(enf_error *error) {
@@ -252,9 +225,6 @@ static enf_status fail_memory(enf_error *error) {
 
 static enf_status insert_point(triangulation *d, int32_t point, enf_error *error) {
     const int32_t first = find_conflict(d, point);
-    if (is_corner(d, d->corner[first], point))
-        return enf_fail(error, ENF_BAD_INPUT, "point %d is equal to another one; weld them first",
-                        (int)point);
     d->in_hole += 2;
     d->not_in_hole += 2;
     if (!dig_hole(d, first, point) || !prepare_filling(d)) return fail_memory(error);
@@ -290,7 +260,7 @@ static bool order_points(const double *points, size_t count, int32_t *order) {
 /// Can the point be one more corner of the first tetrahedron?
 static bool spans(const triangulation *d, const int32_t *corner, int count, int32_t point) {
     if (count == 3) return orient(d, corner[0], corner[1], corner[2], point) != 0;
-    if (count == 1) return !are_equal(d, corner[0], point);
+    if (count == 1) return true;
     return !enf_points_collinear(point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, point));
 }
 
@@ -313,23 +283,32 @@ static enf_status choose_first(const triangulation *d, int32_t *order, size_t co
     return ENF_OK;
 }
 
-/// One tetrahedron, and four around it with a corner at infinity: they fill the hole outside.
+/// One tetrahedron, and four around it with a corner at infinity. False without memory.
 static bool begin(triangulation *d, const int32_t first[4], size_t point_count) {
-    const size_t likely = 8 * point_count; // with those at infinity; more are made room for when they come
+    d->count = 5;
+    const size_t likely = 8 * point_count; // with those at infinity and to spare; more when they come
     if (!enf_array_reserve(d->corner, d->capacity, likely) ||
         !enf_array_reserve(d->next, d->next_capacity, likely) ||
         !enf_array_reserve(d->seen, d->seen_capacity, likely) ||
-        !enf_array_reserve(d->hole, d->hole_capacity, 64) || !enf_array_reserve(d->rim, d->rim_capacity, 64))
+        !enf_array_reserve(d->hole, d->hole_capacity, 64))
         return false;
+    memset(d->seen, 0, d->count * sizeof *d->seen);
     memcpy(d->corner[0], first, sizeof *d->corner);
-    d->seen[0] = 0;
-    d->count = 1;
-    for (int k = 0; k < 4; k++) {
-        const int *at = face_corners[k];
-        d->rim[d->rim_count++] = (rim_face){{first[at[0]], first[at[2]], first[at[1]]}, k};
+    for (int32_t k = 0; k < 4; k++) { // infinity in the place of corner k, and two others exchanged
+        int32_t *corner = d->corner[k + 1];
+        const int a = (k + 1) % 4, b = (k + 2) % 4;
+        memcpy(corner, first, sizeof *d->corner);
+        corner[k] = AT_INFINITY;
+        corner[a] = first[b];
+        corner[b] = first[a];
+        join_faces(d, k, 4 * (k + 1) + k);
+        for (int32_t i = 0; i < k; i++) {
+            const int here = i == a ? b : i == b ? a : i; // where corner i is
+            const int ia = (i + 1) % 4, ib = (i + 2) % 4, there = k == ia ? ib : k == ib ? ia : k;
+            join_faces(d, 4 * (k + 1) + here, 4 * (i + 1) + there);
+        }
     }
-    if (!prepare_filling(d)) return false;
-    fill_hole(d, AT_INFINITY);
+    d->last = 0;
     d->not_in_hole = 1;
     return true;
 }
@@ -338,7 +317,7 @@ static bool begin(triangulation *d, const int32_t first[4], size_t point_count) 
 static void take_tetrahedra(triangulation *d, enf_tetrahedra *out) {
     size_t count = 0;
     for (size_t t = 0; t < d->count; t++) {
-        if (d->corner[t][0] == SPARE || find_infinity(d->corner[t]) >= 0) continue;
+        if (!is_finite(d->corner[t])) continue;
         if (count != t) memcpy(d->corner[count], d->corner[t], sizeof *d->corner);
         count++;
     }
@@ -347,14 +326,26 @@ static void take_tetrahedra(triangulation *d, enf_tetrahedra *out) {
     d->corner = NULL;
 }
 
-enf_status enf_delaunay(const double *points, size_t point_count, enf_tetrahedra *out, enf_error *error) {
-    *out = (enf_tetrahedra){0};
+/// The points must be in lexicographic order, all different.
+static enf_status check_points(const double *points, size_t point_count, enf_error *error) {
     if (point_count > INT32_MAX)
         return enf_fail(error, ENF_NO_RESOURCES, "%zu points are more than this build can number",
                         point_count);
+    for (size_t i = 1; i < point_count; i++) {
+        const double *p = points + 3 * (i - 1), *q = p + 3;
+        if (p[0] < q[0] || (p[0] == q[0] && (p[1] < q[1] || (p[1] == q[1] && p[2] < q[2])))) continue;
+        return enf_fail(error, ENF_BAD_INPUT, "points %zu and %zu are equal or not sorted; weld them first",
+                        i - 1, i);
+    }
+    return ENF_OK;
+}
+
+enf_status enf_delaunay(const double *points, size_t point_count, enf_tetrahedra *out, enf_error *error) {
+    *out = (enf_tetrahedra){0};
+    enf_status status = check_points(points, point_count, error);
+    if (status != ENF_OK) return status;
     triangulation d = {.points = points};
     int32_t *order = enf_array_new(point_count, sizeof *order);
-    enf_status status = ENF_OK;
     if (!order || !order_points(points, point_count, order)) status = fail_memory(error);
     if (!status) status = choose_first(&d, order, point_count, error);
     if (!status && !begin(&d, order, point_count)) status = fail_memory(error);
