@@ -18,20 +18,30 @@
 
 enum { AT_INFINITY = -1, SPARE = -2 }; ///< in place of corners; the latter in that of the first
 
+/// A rim is a sphere, so it has half as many corners as faces, and two.
+enum { RIM_POINTS_MAX = 64, SMALL_RIM = 2 * RIM_POINTS_MAX - 4 };
+
 /// Faces have numbers, too: 4 * tetrahedron + the corner that is opposite.
+typedef struct tetrahedron {
+    int32_t corner[4]; ///< positively oriented, also when a point beyond the hull is put for infinity
+    int32_t next[4];   ///< for each face, the same face of the neighbour
+} tetrahedron;
+
 typedef struct triangulation {
     const double *points;
-    int32_t (*corner)[4]; ///< positively oriented, also when a point beyond the hull is put for infinity
-    int32_t (*next)[4];   ///< for each face, the same face of the neighbour
-    uint32_t *seen;       ///< in_hole or not_in_hole as of now; other values are of earlier points
-    size_t count, capacity, next_capacity, seen_capacity;
+    tetrahedron *tets;
+    uint32_t *seen; ///< in_hole or not_in_hole as of now; other values are of earlier points
+    size_t count, capacity, seen_capacity;
 
     uint32_t in_hole, not_in_hole;
     int32_t *hole; ///< tetrahedra
     size_t hole_count, hole_capacity;
     int32_t *rim; ///< faces of tetrahedra in the hole with none of them beyond
     size_t rim_count, rim_capacity;
-    int32_t *spare; ///< tetrahedra that are none
+    int32_t rim_points, rim_point[RIM_POINTS_MAX]; ///< the corners of a small rim
+    uint8_t *place; ///< of points, from infinity on: which corner of the rim they were last
+    int32_t waiting[RIM_POINTS_MAX][RIM_POINTS_MAX]; ///< faces; -1: none
+    int32_t *spare;                                  ///< tetrahedra that are none
     size_t spare_count, spare_capacity;
     int32_t last; ///< a tetrahedron at the last point
 } triangulation;
@@ -43,8 +53,8 @@ static const int face_corners[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2
 static const int8_t corner_places[4][4] = {{-1, 0, 2, 1}, {0, -1, 1, 2}, {0, 2, -1, 1}, {0, 1, 2, -1}};
 
 static void free_triangulation(triangulation *d) {
-    free(d->corner);
-    free(d->next);
+    free(d->tets);
+    free(d->place);
     free(d->seen);
     free(d->hole);
     free(d->rim);
@@ -106,10 +116,10 @@ static int find_corner(const int32_t corner[4], int32_t point) {
 /// Must the tetrahedron go when the point comes? At infinity the sphere is the half-space beyond the hull
 /// and, in the hull's plane, the circle in which that meets the sphere of the tetrahedron inside.
 static bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
-    if (is_finite(d->corner[t])) return sphere_holds(d, d->corner[t], point);
-    const int infinity = find_corner(d->corner[t], AT_INFINITY);
-    const int side = side_of_face(d, d->corner[t], infinity, point);
-    return side > 0 || (side == 0 && sphere_holds(d, d->corner[d->next[t][infinity] / 4], point));
+    if (is_finite(d->tets[t].corner)) return sphere_holds(d, d->tets[t].corner, point);
+    const int infinity = find_corner(d->tets[t].corner, AT_INFINITY);
+    const int side = side_of_face(d, d->tets[t].corner, infinity, point);
+    return side > 0 || (side == 0 && sphere_holds(d, d->tets[d->tets[t].next[infinity] / 4].corner, point));
 }
 
 // ---------------------------------------------------------------------------------------------- insertion
@@ -118,17 +128,17 @@ static bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
 /// tetrahedra cannot lead round in circles (H. Edelsbrunner, 1990).
 static int32_t find_conflict(const triangulation *d, int32_t point) {
     int32_t t = d->last;
-    if (!is_finite(d->corner[t])) t = d->next[t][find_corner(d->corner[t], AT_INFINITY)] / 4;
+    if (!is_finite(d->tets[t].corner)) t = d->tets[t].next[find_corner(d->tets[t].corner, AT_INFINITY)] / 4;
     for (int32_t came = -1;;) {
         int k = 0;
         for (; k < 4; k++) {
-            if (d->next[t][k] == came) continue;
-            if (side_of_face(d, d->corner[t], k, point) < 0) break;
+            if (d->tets[t].next[k] == came) continue;
+            if (side_of_face(d, d->tets[t].corner, k, point) < 0) break;
         }
         if (k == 4) return t;
         came = 4 * t + k;
-        t = d->next[t][k] / 4;
-        if (!is_finite(d->corner[t])) return t;
+        t = d->tets[t].next[k] / 4;
+        if (!is_finite(d->tets[t].corner)) return t;
     }
 }
 
@@ -142,7 +152,7 @@ static bool dig_hole(triangulation *d, int32_t first, int32_t point) {
         if (!enf_array_reserve(d->rim, d->rim_capacity, d->rim_count + 4)) return false;
         const int32_t t = d->hole[i];
         for (int k = 0; k < 4; k++) {
-            const int32_t u = d->next[t][k] / 4;
+            const int32_t u = d->tets[t].next[k] / 4;
             if (d->seen[u] == d->in_hole) continue;
             if (d->seen[u] != d->not_in_hole) {
                 const bool conflict = is_in_conflict(d, u, point);
@@ -160,14 +170,13 @@ static bool dig_hole(triangulation *d, int32_t first, int32_t point) {
 static bool prepare_filling(triangulation *d) {
     const size_t wanted = d->count + d->rim_count;
     return enf_array_reserve(d->spare, d->spare_capacity, d->spare_count + d->hole_count) &&
-           enf_array_reserve(d->corner, d->capacity, wanted) &&
-           enf_array_reserve(d->next, d->next_capacity, wanted) &&
+           enf_array_reserve(d->tets, d->capacity, wanted) &&
            enf_array_reserve(d->seen, d->seen_capacity, wanted);
 }
 
 static void join_faces(triangulation *d, int32_t a, int32_t b) {
-    d->next[a / 4][a % 4] = b;
-    d->next[b / 4][b % 4] = a;
+    d->tets[a / 4].next[a % 4] = b;
+    d->tets[b / 4].next[b % 4] = a;
 }
 
 static int32_t take_slot(triangulation *d) {
@@ -176,45 +185,83 @@ static int32_t take_slot(triangulation *d) {
     return (int32_t)d->count++;
 }
 
-/// The tetrahedron between a face of the rim and the point. Where the face was joined to what is beyond, it
-/// is left behind, as -1 - its number.
-static void add_tetrahedron(triangulation *d, int32_t face, int32_t point) {
-    const int32_t t = take_slot(d), *corner = d->corner[face / 4], beyond = d->next[face / 4][face % 4];
+/// The tetrahedron between a face of the rim and the point. Returns its number.
+static int32_t add_tetrahedron(triangulation *d, int32_t face, int32_t point) {
+    const int32_t t = take_slot(d);
+    const tetrahedron *old = &d->tets[face / 4];
     const int *at = face_corners[face % 4];
-    for (int k = 0; k < 3; k++) {
-        d->corner[t][k] = corner[at[k]];
-        d->next[t][k] = -1;
-    }
-    d->corner[t][3] = point;
-    join_faces(d, 4 * t + 3, beyond);
-    d->next[face / 4][face % 4] = -1 - t;
+    tetrahedron *new = &d->tets[t];
+    *new =
+        (tetrahedron){{old->corner[at[0]], old->corner[at[1]], old->corner[at[2]], point}, {-1, -1, -1, -1}};
+    join_faces(d, 4 * t + 3, old->next[face % 4]);
     d->last = t;
+    return t;
+}
+
+/// A number below RIM_POINTS_MAX for a corner of the rim.
+static int32_t place_of(triangulation *d, int32_t corner) {
+    uint8_t *place = &d->place[corner + 1]; // infinity is -1
+    if (*place >= d->rim_points || d->rim_point[*place] != corner) {
+        *place = (uint8_t)d->rim_points;
+        d->rim_point[d->rim_points++] = corner;
+    }
+    return *place;
+}
+
+/// Each new face waits at its edge of the rim, (from, to), until the other comes, from `to` to `from`.
+static void fill_small_hole(triangulation *d, int32_t point) {
+    d->rim_points = 0;
+    for (size_t i = 0; i < d->rim_count; i++) {
+        const int32_t t = add_tetrahedron(d, d->rim[i], point), *corner = d->tets[t].corner;
+        const int32_t place[3] = {place_of(d, corner[0]), place_of(d, corner[1]), place_of(d, corner[2])};
+        for (int k = 0; k < 3; k++) {
+            const int32_t from = place[(k + 1) % 3], to = place[(k + 2) % 3];
+            int32_t *other = &d->waiting[to][from];
+            if (*other < 0) {
+                d->waiting[from][to] = 4 * t + k;
+            } else {
+                join_faces(d, 4 * t + k, *other);
+                *other = -1;
+            }
+        }
+    }
 }
 
 /// Joins the new tetrahedron at a face of the rim to the other one at each edge of that: turns around the
-/// edge through the hole until the rim comes again.
+/// edge through the hole until the rim comes again. There, -1 - the new tetrahedron has been left.
 static void join_tetrahedron(triangulation *d, int32_t face) {
     const int *at = face_corners[face % 4];
-    const int32_t t = -1 - d->next[face / 4][face % 4], *corner = d->corner[t];
+    const int32_t t = -1 - d->tets[face / 4].next[face % 4], *corner = d->tets[t].corner;
     for (int k = 0; k < 3; k++) {
-        if (d->next[t][k] >= 0) continue;
+        if (d->tets[t].next[k] >= 0) continue;
         const int32_t from = corner[(k + 1) % 3], to = corner[(k + 2) % 3];
         int32_t u = face / 4, came = face % 4, leave = at[k];
-        for (int32_t next; (next = d->next[u][leave]) >= 0;) {
+        for (int32_t next; (next = d->tets[u].next[leave]) >= 0;) {
             u = next / 4;
             came = next % 4;
-            leave = 6 - came - find_corner(d->corner[u], from) - find_corner(d->corner[u], to);
+            leave = 6 - came - find_corner(d->tets[u].corner, from) - find_corner(d->tets[u].corner, to);
         }
-        const int32_t other = -1 - d->next[u][leave];
+        const int32_t other = -1 - d->tets[u].next[leave];
         join_faces(d, 4 * t + k, 4 * other + corner_places[leave][came]);
     }
 }
 
-static void fill_hole(triangulation *d, int32_t point) {
-    for (size_t i = 0; i < d->rim_count; i++) add_tetrahedron(d, d->rim[i], point);
+/// In proportion to the size of the hole, however large.
+static void fill_large_hole(triangulation *d, int32_t point) {
+    for (size_t i = 0; i < d->rim_count; i++) {
+        const int32_t face = d->rim[i], t = add_tetrahedron(d, face, point);
+        d->tets[face / 4].next[face % 4] = -1 - t;
+    }
     for (size_t i = 0; i < d->rim_count; i++) join_tetrahedron(d, d->rim[i]);
+}
+
+static void fill_hole(triangulation *d, int32_t point) {
+    if (d->rim_count <= SMALL_RIM)
+        fill_small_hole(d, point);
+    else
+        fill_large_hole(d, point);
     for (size_t i = 0; i < d->hole_count; i++) {
-        d->corner[d->hole[i]][0] = SPARE;
+        d->tets[d->hole[i]].corner[0] = SPARE;
         d->spare[d->spare_count++] = d->hole[i];
     }
 }
@@ -287,17 +334,18 @@ static enf_status choose_first(const triangulation *d, int32_t *order, size_t co
 static bool begin(triangulation *d, const int32_t first[4], size_t point_count) {
     d->count = 5;
     const size_t likely = 8 * point_count; // with those at infinity and to spare; more when they come
-    if (!enf_array_reserve(d->corner, d->capacity, likely) ||
-        !enf_array_reserve(d->next, d->next_capacity, likely) ||
+    d->place = enf_array_zeroed(point_count + 1, sizeof *d->place);
+    if (!d->place || !enf_array_reserve(d->tets, d->capacity, likely) ||
         !enf_array_reserve(d->seen, d->seen_capacity, likely) ||
         !enf_array_reserve(d->hole, d->hole_capacity, 64))
         return false;
     memset(d->seen, 0, d->count * sizeof *d->seen);
-    memcpy(d->corner[0], first, sizeof *d->corner);
+    memset(d->waiting, 0xff, sizeof d->waiting); // -1
+    memcpy(d->tets[0].corner, first, sizeof d->tets->corner);
     for (int32_t k = 0; k < 4; k++) { // infinity in the place of corner k, and two others exchanged
-        int32_t *corner = d->corner[k + 1];
+        int32_t *corner = d->tets[k + 1].corner;
         const int a = (k + 1) % 4, b = (k + 2) % 4;
-        memcpy(corner, first, sizeof *d->corner);
+        memcpy(corner, first, sizeof d->tets->corner);
         corner[k] = AT_INFINITY;
         corner[a] = first[b];
         corner[b] = first[a];
@@ -313,17 +361,16 @@ static bool begin(triangulation *d, const int32_t first[4], size_t point_count) 
     return true;
 }
 
-/// The finite tetrahedra; takes the array of corners.
+/// The finite tetrahedra; their corners take the place of everything.
 static void take_tetrahedra(triangulation *d, enf_tetrahedra *out) {
+    int32_t(*corners)[4] = (int32_t(*)[4])d->tets;
     size_t count = 0;
     for (size_t t = 0; t < d->count; t++) {
-        if (!is_finite(d->corner[t])) continue;
-        if (count != t) memcpy(d->corner[count], d->corner[t], sizeof *d->corner);
-        count++;
+        if (is_finite(d->tets[t].corner)) memmove(corners[count++], d->tets[t].corner, sizeof *corners);
     }
-    void *trimmed = realloc(d->corner, count * sizeof *d->corner);
-    *out = (enf_tetrahedra){.corners = trimmed ? trimmed : d->corner, .count = count};
-    d->corner = NULL;
+    void *trimmed = realloc(d->tets, count * sizeof *corners);
+    *out = (enf_tetrahedra){.corners = trimmed ? trimmed : d->tets, .count = count};
+    d->tets = NULL;
 }
 
 /// The points must be in lexicographic order, all different.
