@@ -2,6 +2,7 @@
 // Both tetrahedralizers against arithmetic of the test's own: 128-bit integers, which are exact for small
 // coordinates.
 #include "base/exact.h"
+#include "build/delaunay.h"
 #include "build/tet_order.h"
 #include "oracle.h"
 #include "shim/shim.h"
@@ -147,9 +148,19 @@ static void check_empty_spheres(const cloud *cloud, const enf_tetrahedra *cells)
             assert_false(sphere_contains(cloud->points, cells->corners[i], point));
 }
 
+// Ours must be the very tetrahedra of CGAL.
+static void check_ours(const cloud *cloud, const enf_tetrahedra *cells) {
+    const enf_tetrahedra ours = make(enf_delaunay, cloud);
+    assert_int_equal(ours.count, cells->count);
+    assert_memory_equal(ours.corners, cells->corners, ours.count * sizeof *ours.corners);
+    free(ours.corners);
+}
+
 static void check_both(cloud cloud, wide volume) {
+    qsort(cloud.points, cloud.count, 3 * sizeof(double), compare_points);
     enf_tetrahedra cells = make(enf_shim_delaunay_cgal, &cloud);
     const wide found = check_cells(&cloud, &cells);
+    check_ours(&cloud, &cells);
     if (cloud.count <= 300) check_empty_spheres(&cloud, &cells);
     if (volume > 0) assert_true(found == volume);
     free(cells.corners);
@@ -215,6 +226,7 @@ static void largest_coordinates_are_fine(void **state) {
     cloud cloud = make_random(500, two53, 11);
     enf_tetrahedra cells = make(enf_shim_delaunay_cgal, &cloud);
     assert_true(cells.count > 1000);
+    check_ours(&cloud, &cells);
     free(cells.corners);
     if (enf_shim_has_tetgen()) {
         cells = make(enf_shim_delaunay_tetgen, &cloud);
@@ -228,6 +240,10 @@ static void check_refused(const cloud *cloud) {
     enf_tetrahedra cells;
     enf_error error = {0};
     assert_int_equal(enf_shim_delaunay_cgal(cloud->points, cloud->count, &cells, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, "plane"));
+    assert_null(cells.corners);
+    qsort(cloud->points, cloud->count, 3 * sizeof(double), compare_points);
+    assert_int_equal(enf_delaunay(cloud->points, cloud->count, &cells, &error), ENF_BAD_INPUT);
     assert_non_null(strstr(error.text, "plane"));
     assert_null(cells.corners);
     if (!enf_shim_has_tetgen()) return;
@@ -265,6 +281,10 @@ static void almost_flat_worlds_are_tiled_or_refused(void **state) {
     cloud.points[2] += 1;
     enf_tetrahedra cells = make(enf_shim_delaunay_cgal, &cloud);
     assert_true(cells.count >= 47);
+    qsort(cloud.points, cloud.count, 3 * sizeof(double), compare_points);
+    free(cells.corners);
+    cells = make(enf_shim_delaunay_cgal, &cloud);
+    check_ours(&cloud, &cells);
     free(cells.corners);
     enf_error error = {0};
     const enf_status status = enf_shim_delaunay_tetgen(cloud.points, cloud.count, &cells, &error);
@@ -281,9 +301,50 @@ static void equal_points_are_refused(void **state) {
     enf_error error = {0};
     assert_int_equal(enf_shim_delaunay_cgal(cloud.points, cloud.count, &cells, &error), ENF_BAD_INPUT);
     assert_non_null(strstr(error.text, "equal"));
+    assert_int_equal(enf_delaunay(cloud.points, cloud.count, &cells, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, "equal"));
     if (enf_shim_has_tetgen())
         assert_int_not_equal(enf_shim_delaunay_tetgen(cloud.points, cloud.count, &cells, &error), ENF_OK);
     free(cloud.points);
+}
+
+// A fan: all tetrahedra have the same edge, so the holes are as large as the world, and the places, too.
+static void large_holes_are_filled(void **state) {
+    (void)state;
+    const size_t count = (size_t)scaled(3000) + 100;
+    for (int kind = 0; kind < 2; ++kind) {
+        cloud cloud = new_cloud(count + 2);
+        for (size_t i = 0; i < count; ++i) {
+            const double angle = 6.283185307179586 * (double)i / (double)count;
+            cloud.points[3 * i] = rint(ldexp(cos(angle), 40));
+            cloud.points[3 * i + 1] = rint(ldexp(sin(angle), 40));
+            cloud.points[3 * i + 2] = kind == 0 ? 0 : (double)(i % 7);
+        }
+        const double ends[6] = {0, 0, -ldexp(1, 39), 0, 0, ldexp(1, 39)};
+        memcpy(cloud.points + 3 * count, ends, sizeof ends);
+        qsort(cloud.points, cloud.count, 3 * sizeof(double), compare_points);
+        enf_tetrahedra cells = make(enf_shim_delaunay_cgal, &cloud);
+        assert_true(cells.count >= count);
+        check_ours(&cloud, &cells);
+        free(cells.corners);
+        free(cloud.points);
+    }
+}
+
+// Many small clouds on few places: nearly all of it is ties.
+static void ties_are_broken_as_cgal_does(void **state) {
+    (void)state;
+    const long count = scaled(3000);
+    for (long i = 0; i < count; ++i) {
+        cloud cloud = make_random(8 + (size_t)i % 40, 1 + (double)(i % 4), (uint64_t)i);
+        enf_tetrahedra cells;
+        if (enf_shim_delaunay_cgal(cloud.points, cloud.count, &cells, NULL) == ENF_OK) {
+            assert_true(enf_tetrahedra_sort(&cells.corners, cells.count, cloud.points, cloud.count));
+            check_ours(&cloud, &cells);
+        }
+        free(cells.corners);
+        free(cloud.points);
+    }
 }
 
 // ------------------------------------------------------------------------------------------ predicates
@@ -325,14 +386,27 @@ static void make_case(long number, uint64_t *state, double points[5][3]) {
     }
 }
 
+// Of the box around five points.
+static double box_error(double p[5][3]) {
+    double extent[3];
+    for (int k = 0; k < 3; ++k) {
+        double low = p[0][k], high = p[0][k];
+        for (int i = 1; i < 5; ++i) low = fmin(low, p[i][k]), high = fmax(high, p[i][k]);
+        extent[k] = high - low;
+    }
+    return enf_points_sphere_error(extent);
+}
+
 static void predicates_agree_with_cgal(void **state) {
     (void)state;
+    const double error = enf_points_sphere_error((const double[]){2 * two53, 2 * two53, 2 * two53});
     uint64_t random = 5;
     long zeros[2] = {0}, count = scaled(1000000) * KINDS;
     for (long i = 0; i < count; ++i) {
         double p[5][3];
         make_case(i, &random, p);
-        const int side = enf_points_side_of_sphere(p[0], p[1], p[2], p[3], p[4]);
+        const int side =
+            enf_points_side_of_sphere(p[0], p[1], p[2], p[3], p[4], i % 2 ? box_error(p) : error);
         if (side != oracle_side_of_sphere(p[0], p[1], p[2], p[3], p[4])) fail_msg("case %ld: sphere", i);
         zeros[0] += side == 0;
         if (i % 5) continue; // this oracle takes its time
@@ -476,6 +550,8 @@ int main(void) {
         cmocka_unit_test(flat_worlds_are_refused),
         cmocka_unit_test(almost_flat_worlds_are_tiled_or_refused),
         cmocka_unit_test(equal_points_are_refused),
+        cmocka_unit_test(large_holes_are_filled),
+        cmocka_unit_test(ties_are_broken_as_cgal_does),
         cmocka_unit_test(predicates_agree_with_cgal),
         cmocka_unit_test(cgal_does_not_depend_on_the_order_of_points),
         cmocka_unit_test(the_order_of_tetrahedra_depends_on_the_set_only),

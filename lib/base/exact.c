@@ -84,9 +84,6 @@ bool enf_points_collinear(const double a[3], const double b[3], const double c[3
 
 // ---------------------------------------------------------------------------------------------- spheres
 
-/// Whatever the points, the determinant below is not off by more: its magnitude is at most 72 * 2^270.
-#define SURE_OF_SPHERE 0x1p228
-
 enum { SUM_LIMBS = 5 };
 
 /// sum += factor * lift, modulo 2^320, in two's complement; |factor| < 2^191.
@@ -123,12 +120,10 @@ static enf_uint128 lift_of(const int64_t v[3]) {
     return (enf_uint128)lift;
 }
 
-/// The determinant of (u, v, w), each a difference of points; negated for sign -1.
-static parts volume_of(const int64_t u[3], const int64_t v[3], const int64_t w[3], int sign) {
+/// z[0] * minor[0] + z[1] * minor[1] + z[2] * minor[2], all with their signs turned if `negative`.
+static parts volume_of(const int64_t z[3], const enf_int128 minor[3], bool negative) {
     parts sum = {0, 0};
-    add_product(&sum, sign * w[0], minor_of(u[1], u[2], v[1], v[2]));
-    add_product(&sum, sign * w[1], minor_of(u[2], u[0], v[2], v[0]));
-    add_product(&sum, sign * w[2], minor_of(u[0], u[1], v[0], v[1]));
+    for (int i = 0; i < 3; i++) add_product(&sum, negative ? -z[i] : z[i], minor[i]);
     return sum;
 }
 
@@ -136,10 +131,15 @@ static parts volume_of(const int64_t u[3], const int64_t v[3], const int64_t w[3
 static int side_of_sphere_exactly(const double *const corner[4], const double point[3]) {
     int64_t v[4][3];
     for (int i = 0; i < 4; i++) subtract_points(corner[i], point, v[i]);
+    enf_int128 near[4], across[2]; // of x and y: of rows (i, i + 1), and of (i, i + 2)
+    for (int i = 0; i < 4; i++) near[i] = minor_of(v[i][0], v[i][1], v[(i + 1) % 4][0], v[(i + 1) % 4][1]);
+    for (int i = 0; i < 2; i++) across[i] = minor_of(v[i][0], v[i][1], v[i + 2][0], v[i + 2][1]);
     uint64_t sum[SUM_LIMBS] = {0};
     for (int i = 0; i < 4; i++) { // along the last column: the signs alternate
-        const int64_t *b = v[(i + 1) % 4], *c = v[(i + 2) % 4], *d = v[(i + 3) % 4];
-        const parts volume = volume_of(b, c, d, i % 2 ? -1 : 1);
+        const int b = (i + 1) % 4, c = (i + 2) % 4, d = (i + 3) % 4;
+        const int64_t z[3] = {v[b][2], v[c][2], v[d][2]};
+        const enf_int128 minor[3] = {near[c], b < 2 ? -across[b] : across[b - 2], near[b]};
+        const parts volume = volume_of(z, minor, i % 2);
         add_lifted(sum, &volume, lift_of(v[i]));
     }
     if (sum[SUM_LIMBS - 1] >> 63) return -1;
@@ -161,8 +161,16 @@ static double magnitude_of(const double x[4], const double y[4], const double z[
     return magnitude;
 }
 
+/// Shewchuk's bound A for insphere is (16 + 224u)u times the exact sum of magnitudes.
+static const double sphere_error = 17 * 0x1p-53;
+
+double enf_points_sphere_error(const double extent[3]) {
+    const double x = extent[0], y = extent[1], z = extent[2];
+    return sphere_error * 24 * x * y * z * (x * x + y * y + z * z); // 4 lifts, each with 6 products of three
+}
+
 int enf_points_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
-                              const double point[3]) {
+                              const double point[3], double error) {
     const double *const corner[4] = {a, b, c, d};
     double x[4], y[4], z[4], lift[4];
     for (int i = 0; i < 4; i++) {
@@ -176,8 +184,7 @@ int enf_points_side_of_sphere(const double a[3], const double b[3], const double
     double abc = z[0] * bc - z[1] * ac + z[2] * ab, bcd = z[1] * cd - z[2] * bd + z[3] * bc,
            cda = z[2] * da + z[3] * ac + z[0] * cd, dab = z[3] * ab + z[0] * bd + z[1] * da;
     double determinant = (lift[0] * bcd - lift[1] * cda) + (lift[2] * dab - lift[3] * abc);
-    if (fabs(determinant) > SURE_OF_SPHERE) return determinant > 0 ? 1 : -1;
-    // Shewchuk's bound A for insphere is (16 + 224u)u times the exact sum of magnitudes.
-    if (fabs(determinant) > 17 * 0x1p-53 * magnitude_of(x, y, z, lift)) return determinant > 0 ? 1 : -1;
+    if (fabs(determinant) > error || fabs(determinant) > sphere_error * magnitude_of(x, y, z, lift))
+        return determinant > 0 ? 1 : -1;
     return side_of_sphere_exactly(corner, point);
 }

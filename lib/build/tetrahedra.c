@@ -64,12 +64,14 @@ int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32
 static enf_status make_slots(enf_tet_mesh *mesh, enf_error *error) {
     uint32_t *begin = mesh->slot_begin = enf_array_zeroed((size_t)mesh->point_count + 1, sizeof *begin);
     if (!begin) return enf_fail_memory(error, "the tetrahedra's faces");
-    for (int32_t t = 0; t < mesh->count; t++) {
-        for (int k = 0; k < 4; k++) {
-            int32_t face[3];
-            sorted_face(mesh->corners[t], k, face);
-            begin[face[0] + 1]++;
-        }
+    for (int32_t t = 0; t < mesh->count; t++) { // three faces have the lowest corner, one the next
+        int32_t pair[2][2], *one = pair[0], *other = pair[1];
+        memcpy(pair, mesh->corners[t], sizeof pair);
+        order(&one[0], &one[1]);
+        order(&other[0], &other[1]);
+        order(&one[0], &other[0]);
+        begin[one[0] + 1] += 3;
+        begin[(one[1] < other[0] ? one[1] : other[0]) + 1]++;
     }
     for (int32_t i = 0; i < mesh->point_count; i++) begin[i + 1] += begin[i] + 1;
     const size_t slots = begin[mesh->point_count];
