@@ -41,13 +41,11 @@ struct Orient {
 
 struct SideOfSphere {
     using result_type = CGAL::Oriented_side;
-    static constexpr double largest[3] = {0x1p54, 0x1p54, 0x1p54};
-    double error = enf_points_sphere_error(largest);
 
     result_type operator()(const NumberedPoint &a, const NumberedPoint &b, const NumberedPoint &c,
                            const NumberedPoint &d, const NumberedPoint &point) const {
         return static_cast<result_type>(enf_points_side_of_sphere(
-            a.coordinates(), b.coordinates(), c.coordinates(), d.coordinates(), point.coordinates(), error));
+            a.coordinates(), b.coordinates(), c.coordinates(), d.coordinates(), point.coordinates()));
     }
 };
 

@@ -161,16 +161,18 @@ static double magnitude_of(const double x[4], const double y[4], const double z[
     return magnitude;
 }
 
-/// Shewchuk's bound A for insphere is (16 + 224u)u times the exact sum of magnitudes.
-static const double sphere_error = 17 * 0x1p-53;
+/// Shewchuk's bound A for insphere: (16 + 224u)u times the exact sum of magnitudes.
+#define SPHERE_ERROR (17 * 0x1p-53)
 
-double enf_points_sphere_error(const double extent[3]) {
-    const double x = extent[0], y = extent[1], z = extent[2];
-    return sphere_error * 24 * x * y * z * (x * x + y * y + z * z); // 4 lifts, each with 6 products of three
+/// Is the determinant so large that its sign is sure? No lift is above `largest`, so no coordinate is above
+/// its root: the sum of magnitudes is at most 4 * 6 * largest^2.5. Squares spare the root.
+static bool is_sure(double determinant, double largest) {
+    const double square = largest * largest, factor = 24 * SPHERE_ERROR;
+    return determinant * determinant > factor * factor * (square * square * largest);
 }
 
 int enf_points_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
-                              const double point[3], double error) {
+                              const double point[3]) {
     const double *const corner[4] = {a, b, c, d};
     double x[4], y[4], z[4], lift[4];
     for (int i = 0; i < 4; i++) {
@@ -184,7 +186,9 @@ int enf_points_side_of_sphere(const double a[3], const double b[3], const double
     double abc = z[0] * bc - z[1] * ac + z[2] * ab, bcd = z[1] * cd - z[2] * bd + z[3] * bc,
            cda = z[2] * da + z[3] * ac + z[0] * cd, dab = z[3] * ab + z[0] * bd + z[1] * da;
     double determinant = (lift[0] * bcd - lift[1] * cda) + (lift[2] * dab - lift[3] * abc);
-    if (fabs(determinant) > error || fabs(determinant) > sphere_error * magnitude_of(x, y, z, lift))
+    double low = lift[0] > lift[1] ? lift[0] : lift[1], high = lift[2] > lift[3] ? lift[2] : lift[3];
+    if (is_sure(determinant, low > high ? low : high) ||
+        fabs(determinant) > SPHERE_ERROR * magnitude_of(x, y, z, lift))
         return determinant > 0 ? 1 : -1;
     return side_of_sphere_exactly(corner, point);
 }

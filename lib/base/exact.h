@@ -14,14 +14,9 @@ int enf_points_orient(const double a[3], const double b[3], const double c[3], c
 bool enf_points_collinear(const double a[3], const double b[3], const double c[3]);
 
 /// Is the point inside the sphere through a, b, c, d (+1), outside (-1) or on it (0)? They must be positively
-/// oriented (enf_points_orient > 0); the sign is the opposite if they are negatively oriented. `error`: of
-/// enf_points_sphere_error for the box around all points.
+/// oriented (enf_points_orient > 0); the sign is the opposite if they are negatively oriented.
 int enf_points_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
-                              const double point[3], double error);
-
-/// By how much, at most, the determinant that decides may be rounded if coordinates differ by no more than
-/// this (at most 2^54).
-double enf_points_sphere_error(const double extent[3]);
+                              const double point[3]);
 
 /// The largest power of two that divides all three coordinates of all `count` points; 2^53 if they are all 0.
 /// Sums and products of multiples of a unit are exact in a double while they stay below 2^53 units.

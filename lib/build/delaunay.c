@@ -29,7 +29,6 @@ typedef struct tetrahedron {
 
 typedef struct triangulation {
     const double *points;
-    double sphere_error; ///< see enf_points_sphere_error
     tetrahedron *tets;
     uint32_t *seen; ///< in_hole or not_in_hole as of now; other values are of earlier points
     size_t count, capacity, seen_capacity;
@@ -101,7 +100,7 @@ static bool perturbed_sphere_holds(const triangulation *d, const int32_t corner[
 static bool sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
     const int side =
         enf_points_side_of_sphere(point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, corner[2]),
-                                  point_at(d, corner[3]), point_at(d, point), d->sphere_error);
+                                  point_at(d, corner[3]), point_at(d, point));
     return side > 0 || (side == 0 && perturbed_sphere_holds(d, corner, point));
 }
 
@@ -305,20 +304,6 @@ static bool order_points(const double *points, size_t count, int32_t *order) {
     return true;
 }
 
-/// Of enf_points_side_of_sphere, for these points.
-static double find_sphere_error(const double *points, size_t count) {
-    double low[3] = {0}, high[3] = {0}, extent[3];
-    for (size_t i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) {
-            const double x = points[3 * i + (size_t)k];
-            low[k] = i == 0 || x < low[k] ? x : low[k];
-            high[k] = i == 0 || x > high[k] ? x : high[k];
-        }
-    }
-    for (int k = 0; k < 3; k++) extent[k] = high[k] - low[k];
-    return enf_points_sphere_error(extent);
-}
-
 /// Can the point be one more corner of the first tetrahedron?
 static bool spans(const triangulation *d, const int32_t *corner, int count, int32_t point) {
     if (count == 3) return orient(d, corner[0], corner[1], corner[2], point) != 0;
@@ -406,7 +391,7 @@ enf_status enf_delaunay(const double *points, size_t point_count, enf_tetrahedra
     *out = (enf_tetrahedra){0};
     enf_status status = check_points(points, point_count, error);
     if (status != ENF_OK) return status;
-    triangulation d = {.points = points, .sphere_error = find_sphere_error(points, point_count)};
+    triangulation d = {.points = points};
     int32_t *order = enf_array_new(point_count, sizeof *order);
     if (!order || !order_points(points, point_count, order)) status = fail_memory(error);
     if (!status) status = choose_first(&d, order, point_count, error);
