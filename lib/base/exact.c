@@ -128,7 +128,9 @@ static parts volume_of(const int64_t z[3], const enf_int128 minor[3], bool negat
 }
 
 /// Rows a, b, c, d of the matrix (x, y, z, x^2 + y^2 + z^2) of the corners as seen from the point.
-static int side_of_sphere_exactly(const double *const corner[4], const double point[3]) {
+/// Apart, so that the many that need it not do not save its registers.
+__attribute__((noinline)) static int side_of_sphere_exactly(const double *const corner[4],
+                                                            const double point[3]) {
     int64_t v[4][3];
     for (int i = 0; i < 4; i++) subtract_points(corner[i], point, v[i]);
     enf_int128 near[4], across[2]; // of x and y: of rows (i, i + 1), and of (i, i + 2)
@@ -147,18 +149,6 @@ static int side_of_sphere_exactly(const double *const corner[4], const double po
         if (sum[i]) return 1;
     }
     return 0;
-}
-
-/// The sum of the magnitudes of all products in the determinant.
-static double magnitude_of(const double x[4], const double y[4], const double z[4], const double lift[4]) {
-    double magnitude = 0;
-    for (int i = 0; i < 4; i++) {
-        const int b = (i + 1) % 4, c = (i + 2) % 4, d = (i + 3) % 4;
-        magnitude += lift[i] * (fabs(z[b]) * (fabs(x[c] * y[d]) + fabs(x[d] * y[c])) +
-                                fabs(z[c]) * (fabs(x[d] * y[b]) + fabs(x[b] * y[d])) +
-                                fabs(z[d]) * (fabs(x[b] * y[c]) + fabs(x[c] * y[b])));
-    }
-    return magnitude;
 }
 
 /// Shewchuk's bound A for insphere: (16 + 224u)u times the exact sum of magnitudes.
@@ -187,8 +177,6 @@ int enf_points_side_of_sphere(const double a[3], const double b[3], const double
            cda = z[2] * da + z[3] * ac + z[0] * cd, dab = z[3] * ab + z[0] * bd + z[1] * da;
     double determinant = (lift[0] * bcd - lift[1] * cda) + (lift[2] * dab - lift[3] * abc);
     double low = lift[0] > lift[1] ? lift[0] : lift[1], high = lift[2] > lift[3] ? lift[2] : lift[3];
-    if (is_sure(determinant, low > high ? low : high) ||
-        fabs(determinant) > SPHERE_ERROR * magnitude_of(x, y, z, lift))
-        return determinant > 0 ? 1 : -1;
+    if (is_sure(determinant, low > high ? low : high)) return determinant > 0 ? 1 : -1;
     return side_of_sphere_exactly(corner, point);
 }
