@@ -528,6 +528,7 @@ static void a_build_without_tetgen_says_so(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(predicates_agree_with_cgal), // before others rely on them
         cmocka_unit_test(a_cube_is_tiled),
         cmocka_unit_test(one_tetrahedron_is_itself),
         cmocka_unit_test(lattices_are_tiled),
@@ -539,7 +540,6 @@ int main(void) {
         cmocka_unit_test(equal_points_are_refused),
         cmocka_unit_test(large_holes_are_filled),
         cmocka_unit_test(ties_are_broken_as_cgal_does),
-        cmocka_unit_test(predicates_agree_with_cgal),
         cmocka_unit_test(cgal_does_not_depend_on_the_order_of_points),
         cmocka_unit_test(the_order_of_tetrahedra_depends_on_the_set_only),
         cmocka_unit_test(same_points_give_the_same_array),

@@ -97,7 +97,7 @@ static enf_status tetrahedralize(kitchen *k) {
     }
     status = enf_tet_mesh_pair(&k->tets, made.corners, made.count, (int32_t)mesh->point_count, k->error);
     if (status != ENF_OK) return status;
-    say(k, "%d tetrahedra by %s", (int)k->tets.count, tetgen ? "TetGen" : "CGAL");
+    say(k, "%d tetrahedra%s", (int)k->tets.count, tetgen ? " by TetGen" : "");
     enf_memory_count_tetrahedra(counts, mesh, &k->tets);
     k->build->peak_bytes_predicted = enf_memory_estimate(counts);
     return enf_memory_admit(counts, k->options->memory, k->error);
