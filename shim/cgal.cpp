@@ -3,6 +3,7 @@
 // perturbation of Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D
 // triangulations" (2011), which orders points lexicographically and leaves no flat tetrahedra: the result
 // depends on the set of points only. The only file that includes CGAL (heavy to compile).
+#include "shim/cgal_traits.hpp"
 #include "shim/shim.h"
 #include "shim/tetrahedra.hpp"
 
@@ -11,23 +12,18 @@ extern "C" {
 }
 
 #include <CGAL/Delaunay_triangulation_3.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <cfenv>
 #include <cstdlib>
 #include <exception>
 #include <new>
-#include <utility>
 #include <vector>
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<int32_t, Kernel>;
-using Structure =
-    CGAL::Triangulation_data_structure_3<VertexBase, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
-using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, Structure>;
+using enf::Kernel;
+using enf::NumberedPoint;
+using Delaunay = CGAL::Delaunay_triangulation_3<enf::Traits>;
 
 // CGAL's interval arithmetic rounds upwards while it works; whatever happens inside, the caller's mode comes
 // back.
@@ -43,12 +39,9 @@ class RoundingMode {
 };
 
 Delaunay triangulate(const double *points, size_t point_count) {
-    std::vector<std::pair<Kernel::Point_3, int32_t>> input;
+    std::vector<NumberedPoint> input;
     input.reserve(point_count);
-    for (size_t i = 0; i < point_count; ++i) {
-        const double *point = points + 3 * i;
-        input.emplace_back(Kernel::Point_3(point[0], point[1], point[2]), static_cast<int32_t>(i));
-    }
+    for (size_t i = 0; i < point_count; ++i) input.emplace_back(points + 3 * i, static_cast<int32_t>(i));
     return Delaunay(input.begin(), input.end());
 }
 
@@ -57,9 +50,8 @@ enf_status take_cells(const Delaunay &delaunay, enf_tetrahedra *out, enf_error *
     if (status != ENF_OK) return status;
     for (auto cell : delaunay.finite_cell_handles()) {
         int32_t *corners = out->corners[out->count++];
-        for (int k = 0; k < 4; ++k) corners[k] = cell->vertex(k)->info();
+        for (int k = 0; k < 4; ++k) corners[k] = cell->vertex(k)->point().number;
     }
-    enf::sort_tetrahedra(delaunay.number_of_vertices(), *out);
     return ENF_OK;
 }
 

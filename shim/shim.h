@@ -9,8 +9,8 @@
 extern "C" {
 #endif
 
-/// Tetrahedra of a Delaunay triangulation: four point indices each, positively oriented
-/// (the determinant of (b-a, c-a, d-a) is > 0). Free `corners` with free().
+/// Tetrahedra of a Delaunay triangulation, in no particular order: four point indices each, positively
+/// oriented (the determinant of (b-a, c-a, d-a) is > 0). Free `corners` with free().
 typedef struct enf_tetrahedra {
     int32_t (*corners)[4];
     size_t count;

@@ -154,7 +154,6 @@ enf_status take_cells(const tetgenio &result, const std::vector<int32_t> &order,
         for (int k = 0; k < 4; ++k) out->corners[i][k] = order[corners[k]];
     }
     out->count = count;
-    enf::sort_tetrahedra(order.size(), *out);
     return ENF_OK;
 }
 

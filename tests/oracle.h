@@ -28,6 +28,10 @@ typedef struct oracle_corner {
 /// Sign of the determinant (b - a, c - a, d - a).
 int oracle_orient(const double a[3], const double b[3], const double c[3], const double d[3]);
 
+/// +1 if the point is inside the sphere through a, b, c, d (positively oriented), -1 outside, 0 on it.
+int oracle_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
+                          const double point[3]);
+
 /// Do the three points of the plane span one?
 bool oracle_spans(const oracle_plane *plane);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "oracle.h"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Gmpq.h>
 #include <CGAL/Gmpz.h>
 #include <CGAL/Simple_cartesian.h>
@@ -108,6 +109,13 @@ rational area_of(int axis, const oracle_corner *corners, int count) {
 int oracle_orient(const double a[3], const double b[3], const double c[3], const double d[3]) {
     vector origin = whole(a);
     return sign_of(dot(cross(minus(whole(b), origin), minus(whole(c), origin)), minus(whole(d), origin)));
+}
+
+int oracle_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
+                          const double point[3]) {
+    using exact = CGAL::Exact_predicates_inexact_constructions_kernel;
+    auto at = [](const double p[3]) { return exact::Point_3(p[0], p[1], p[2]); };
+    return static_cast<int>(CGAL::side_of_oriented_sphere(at(a), at(b), at(c), at(d), at(point)));
 }
 
 bool oracle_spans(const oracle_plane *plane) {

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Both tetrahedralizers against arithmetic of the test's own: 128-bit integers, which are exact for small
 // coordinates.
+#include "base/exact.h"
+#include "build/delaunay.h"
+#include "build/tet_order.h"
+#include "oracle.h"
 #include "shim/shim.h"
 
 #include <fenv.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -33,6 +38,13 @@ static cloud new_cloud(size_t count) {
     const cloud result = {count, malloc((count + 1) * 3 * sizeof(double))};
     assert_non_null(result.points);
     return result;
+}
+
+// How many cases: `usual`, times the environment variable ENFILADE_TEST_SCALE.
+static long scaled(long usual) {
+    const char *text = getenv("ENFILADE_TEST_SCALE");
+    const double scale = text ? atof(text) : 1;
+    return scale > 0 ? (long)ceil((double)usual * scale) : usual;
 }
 
 static cloud make_lattice(int side) {
@@ -112,10 +124,11 @@ static enf_tetrahedra make(delaunay_function *delaunay, const cloud *cloud) {
     enf_error error = {0};
     const enf_status status = delaunay(cloud->points, cloud->count, &result, &error);
     if (status != ENF_OK) fail_msg("%s", error.text);
+    assert_true(enf_tetrahedra_sort(&result.corners, result.count, cloud->points, cloud->count));
     return result;
 }
 
-// Every tetrahedron positive, canonical and after its predecessor; returns six times the volume.
+// Every tetrahedron positive and canonical; returns six times the volume.
 static wide check_cells(const cloud *cloud, const enf_tetrahedra *cells) {
     wide volume = 0;
     for (size_t i = 0; i < cells->count; ++i) {
@@ -125,10 +138,6 @@ static wide check_cells(const cloud *cloud, const enf_tetrahedra *cells) {
         const wide part = find_volume(cloud->points, c);
         assert_true(part > 0);
         volume += part;
-        if (i == 0) continue;
-        int order = 0;
-        for (int k = 0; k < 4 && order == 0; ++k) order = (c[k] > c[k - 4]) - (c[k] < c[k - 4]);
-        assert_int_equal(order, 1);
     }
     return volume;
 }
@@ -139,9 +148,19 @@ static void check_empty_spheres(const cloud *cloud, const enf_tetrahedra *cells)
             assert_false(sphere_contains(cloud->points, cells->corners[i], point));
 }
 
+// Ours must be the very tetrahedra of CGAL.
+static void check_ours(const cloud *cloud, const enf_tetrahedra *cells) {
+    const enf_tetrahedra ours = make(enf_delaunay, cloud);
+    assert_int_equal(ours.count, cells->count);
+    assert_memory_equal(ours.corners, cells->corners, ours.count * sizeof *ours.corners);
+    free(ours.corners);
+}
+
 static void check_both(cloud cloud, wide volume) {
+    qsort(cloud.points, cloud.count, 3 * sizeof(double), compare_points);
     enf_tetrahedra cells = make(enf_shim_delaunay_cgal, &cloud);
     const wide found = check_cells(&cloud, &cells);
+    check_ours(&cloud, &cells);
     if (cloud.count <= 300) check_empty_spheres(&cloud, &cells);
     if (volume > 0) assert_true(found == volume);
     free(cells.corners);
@@ -207,6 +226,7 @@ static void largest_coordinates_are_fine(void **state) {
     cloud cloud = make_random(500, two53, 11);
     enf_tetrahedra cells = make(enf_shim_delaunay_cgal, &cloud);
     assert_true(cells.count > 1000);
+    check_ours(&cloud, &cells);
     free(cells.corners);
     if (enf_shim_has_tetgen()) {
         cells = make(enf_shim_delaunay_tetgen, &cloud);
@@ -220,6 +240,10 @@ static void check_refused(const cloud *cloud) {
     enf_tetrahedra cells;
     enf_error error = {0};
     assert_int_equal(enf_shim_delaunay_cgal(cloud->points, cloud->count, &cells, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, "plane"));
+    assert_null(cells.corners);
+    qsort(cloud->points, cloud->count, 3 * sizeof(double), compare_points);
+    assert_int_equal(enf_delaunay(cloud->points, cloud->count, &cells, &error), ENF_BAD_INPUT);
     assert_non_null(strstr(error.text, "plane"));
     assert_null(cells.corners);
     if (!enf_shim_has_tetgen()) return;
@@ -257,6 +281,10 @@ static void almost_flat_worlds_are_tiled_or_refused(void **state) {
     cloud.points[2] += 1;
     enf_tetrahedra cells = make(enf_shim_delaunay_cgal, &cloud);
     assert_true(cells.count >= 47);
+    qsort(cloud.points, cloud.count, 3 * sizeof(double), compare_points);
+    free(cells.corners);
+    cells = make(enf_shim_delaunay_cgal, &cloud);
+    check_ours(&cloud, &cells);
     free(cells.corners);
     enf_error error = {0};
     const enf_status status = enf_shim_delaunay_tetgen(cloud.points, cloud.count, &cells, &error);
@@ -273,9 +301,107 @@ static void equal_points_are_refused(void **state) {
     enf_error error = {0};
     assert_int_equal(enf_shim_delaunay_cgal(cloud.points, cloud.count, &cells, &error), ENF_BAD_INPUT);
     assert_non_null(strstr(error.text, "equal"));
+    assert_int_equal(enf_delaunay(cloud.points, cloud.count, &cells, &error), ENF_BAD_INPUT);
+    assert_non_null(strstr(error.text, "equal"));
     if (enf_shim_has_tetgen())
         assert_int_not_equal(enf_shim_delaunay_tetgen(cloud.points, cloud.count, &cells, &error), ENF_OK);
     free(cloud.points);
+}
+
+// A fan: all tetrahedra have the same edge, so the holes are as large as the world, and the places, too.
+static void large_holes_are_filled(void **state) {
+    (void)state;
+    const size_t count = (size_t)scaled(3000) + 100;
+    for (int kind = 0; kind < 2; ++kind) {
+        cloud cloud = new_cloud(count + 2);
+        for (size_t i = 0; i < count; ++i) {
+            const double angle = 6.283185307179586 * (double)i / (double)count;
+            cloud.points[3 * i] = rint(ldexp(cos(angle), 40));
+            cloud.points[3 * i + 1] = rint(ldexp(sin(angle), 40));
+            cloud.points[3 * i + 2] = kind == 0 ? 0 : (double)(i % 7);
+        }
+        const double ends[6] = {0, 0, -ldexp(1, 39), 0, 0, ldexp(1, 39)};
+        memcpy(cloud.points + 3 * count, ends, sizeof ends);
+        qsort(cloud.points, cloud.count, 3 * sizeof(double), compare_points);
+        enf_tetrahedra cells = make(enf_shim_delaunay_cgal, &cloud);
+        assert_true(cells.count >= count);
+        check_ours(&cloud, &cells);
+        free(cells.corners);
+        free(cloud.points);
+    }
+}
+
+// Many small clouds on few places: nearly all of it is ties.
+static void ties_are_broken_as_cgal_does(void **state) {
+    (void)state;
+    const long count = scaled(3000);
+    for (long i = 0; i < count; ++i) {
+        cloud cloud = make_random(8 + (size_t)i % 40, 1 + (double)(i % 4), (uint64_t)i);
+        enf_tetrahedra cells;
+        if (enf_shim_delaunay_cgal(cloud.points, cloud.count, &cells, NULL) == ENF_OK) {
+            assert_true(enf_tetrahedra_sort(&cells.corners, cells.count, cloud.points, cloud.count));
+            check_ours(&cloud, &cells);
+        }
+        free(cells.corners);
+        free(cloud.points);
+    }
+}
+
+// ------------------------------------------------------------------------------------------ predicates
+
+enum { KINDS = 6 };
+
+static double random_whole(uint64_t *state, double range) {
+    return (double)(next_random(state) % (uint64_t)(2 * range + 1)) - range;
+}
+
+// A point of a sphere of radius `radius` about the origin, rounded.
+static void random_on_sphere(uint64_t *state, double radius, double point[3]) {
+    double length = 0;
+    while (length == 0) {
+        for (int k = 0; k < 3; ++k) point[k] = random_whole(state, 1000);
+        length = sqrt(point[0] * point[0] + point[1] * point[1] + point[2] * point[2]);
+    }
+    for (int k = 0; k < 3; ++k) point[k] = fmax(-two53, fmin(two53, rint(point[k] / length * radius)));
+}
+
+// Five points, on or near one sphere or plane more often than not; at most 2^53.
+static void make_case(long number, uint64_t *state, double points[5][3]) {
+    const int kind = (int)(number % KINDS);
+    const double size = ldexp(1, (int)(next_random(state) % 54)), shift = random_whole(state, two53 - size);
+    for (int i = 0; i < 5; ++i) {
+        double *point = points[i];
+        for (int k = 0; k < 3; ++k) {
+            if (kind == 0) point[k] = random_whole(state, size);                // any
+            if (kind == 1) point[k] = floor(random_whole(state, 2) * size / 2); // a small lattice
+            if (kind == 2) point[k] = next_random(state) % 2 ? size : -size;    // a cube
+            if (kind == 3) point[k] = next_random(state) % 2 ? two53 : random_whole(state, 3) - two53 + 3;
+        }
+        if (kind >= 4) random_on_sphere(state, size, point);
+        if (kind == 5 && size < two53) point[next_random(state) % 3] += 1 - (double)(next_random(state) % 3);
+        if (kind == 0 && i == 4 && number % 4 == 0) // near a plane
+            for (int k = 0; k < 3; ++k) point[k] = floor((points[0][k] + points[1][k] + points[2][k]) / 3);
+        if (kind < 3 && number % 5 == 0) // far away
+            for (int k = 0; k < 3; ++k) point[k] = fmax(-two53, fmin(two53, point[k] + (k ? shift : -shift)));
+    }
+}
+
+static void predicates_agree_with_cgal(void **state) {
+    (void)state;
+    uint64_t random = 5;
+    long zeros[2] = {0}, count = scaled(1000000) * KINDS;
+    for (long i = 0; i < count; ++i) {
+        double p[5][3];
+        make_case(i, &random, p);
+        const int side = enf_points_side_of_sphere(p[0], p[1], p[2], p[3], p[4]);
+        if (side != oracle_side_of_sphere(p[0], p[1], p[2], p[3], p[4])) fail_msg("case %ld: sphere", i);
+        zeros[0] += side == 0;
+        if (i % 5) continue; // this oracle takes its time
+        const int orientation = enf_points_orient(p[0], p[1], p[2], p[3]);
+        if (orientation != oracle_orient(p[0], p[1], p[2], p[3])) fail_msg("case %ld: orientation", i);
+        zeros[1] += orientation == 0;
+    }
+    assert_true(zeros[0] > count / 100 && zeros[1] > count / 500);
 }
 
 static int compare_corners(const void *a, const void *b) {
@@ -331,6 +457,31 @@ static void cgal_does_not_depend_on_the_order_of_points(void **state) {
     }
 }
 
+static void the_order_of_tetrahedra_depends_on_the_set_only(void **state) {
+    (void)state;
+    static const int even[12][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2},
+                                    {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 1, 3, 0},
+                                    {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 2, 1, 0}};
+    for (uint64_t seed = 1; seed <= 10; ++seed) {
+        const double range = seed % 2 ? 6 : two53; // with few places, many tetrahedra share one
+        cloud cloud = make_random(400, range, seed);
+        const enf_tetrahedra expected = make(enf_shim_delaunay_cgal, &cloud);
+        int32_t(*found)[4] = malloc(expected.count * sizeof *found);
+        uint64_t random = seed;
+        for (size_t i = 0; i < expected.count; ++i) { // at random among those before it, turned at random
+            const size_t k = next_random(&random) % (i + 1);
+            const int *turn = even[next_random(&random) % 12];
+            memcpy(found[i], found[k], sizeof *found);
+            for (int j = 0; j < 4; ++j) found[k][j] = expected.corners[i][turn[j]];
+        }
+        assert_true(enf_tetrahedra_sort(&found, expected.count, cloud.points, cloud.count));
+        assert_memory_equal(found, expected.corners, expected.count * sizeof *found);
+        free(found);
+        free(expected.corners);
+        free(cloud.points);
+    }
+}
+
 static void same_points_give_the_same_array(void **state) {
     (void)state;
     delaunay_function *const functions[2] = {enf_shim_delaunay_cgal, enf_shim_delaunay_tetgen};
@@ -377,6 +528,7 @@ static void a_build_without_tetgen_says_so(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(predicates_agree_with_cgal), // before others rely on them
         cmocka_unit_test(a_cube_is_tiled),
         cmocka_unit_test(one_tetrahedron_is_itself),
         cmocka_unit_test(lattices_are_tiled),
@@ -386,7 +538,10 @@ int main(void) {
         cmocka_unit_test(flat_worlds_are_refused),
         cmocka_unit_test(almost_flat_worlds_are_tiled_or_refused),
         cmocka_unit_test(equal_points_are_refused),
+        cmocka_unit_test(large_holes_are_filled),
+        cmocka_unit_test(ties_are_broken_as_cgal_does),
         cmocka_unit_test(cgal_does_not_depend_on_the_order_of_points),
+        cmocka_unit_test(the_order_of_tetrahedra_depends_on_the_set_only),
         cmocka_unit_test(same_points_give_the_same_array),
         cmocka_unit_test(rounding_mode_comes_back),
         cmocka_unit_test(a_build_without_tetgen_says_so),

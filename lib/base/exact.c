@@ -10,22 +10,41 @@
 /// Whatever the points, a determinant is not off by more: its magnitude below is at most 6 * 2^162.
 #define SURE 0x1p115
 
+/// A whole number of up to 191 bits, 2^64 * high + low: products can be added up before anything is carried.
+typedef struct parts {
+    enf_int128 high, low;
+} parts;
+
+/// sum += a * b, |a| <= 2^54
+static void add_product(parts *sum, int64_t a, enf_int128 b) {
+    sum->high += (enf_int128)a * (int64_t)(b >> 64);
+    sum->low += (enf_int128)a * (uint64_t)b;
+}
+
+static int sign_of_parts(const parts *value) {
+    enf_int128 high = value->high + (value->low >> 64);
+    return high < 0 ? -1 : high > 0 || (uint64_t)value->low;
+}
+
+static enf_int128 minor_of(int64_t a, int64_t b, int64_t c, int64_t d) {
+    return (enf_int128)a * d - (enf_int128)b * c;
+}
+
+/// to - from
+static void subtract_points(const double to[3], const double from[3], int64_t difference[3]) {
+    for (int i = 0; i < 3; i++) difference[i] = (int64_t)to[i] - (int64_t)from[i];
+}
+
 static int orient_exactly(const double a[3], const double b[3], const double c[3], const double d[3]) {
     int64_t u[3], v[3], w[3];
-    for (int i = 0; i < 3; i++) {
-        int64_t origin = (int64_t)a[i];
-        u[i] = (int64_t)b[i] - origin;
-        v[i] = (int64_t)c[i] - origin;
-        w[i] = (int64_t)d[i] - origin;
-    }
-    enf_wide sum = {0}, minor, factor;
-    for (int i = 0; i < 3; i++) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        enf_wide_set(&minor, (enf_int128)u[j] * v[k] - (enf_int128)u[k] * v[j]);
-        enf_wide_set(&factor, w[i]);
-        enf_wide_add_product(&sum, &minor, &factor);
-    }
-    return sum.sign;
+    subtract_points(b, a, u);
+    subtract_points(c, a, v);
+    subtract_points(d, a, w);
+    parts sum = {0, 0};
+    add_product(&sum, w[0], minor_of(u[1], u[2], v[1], v[2]));
+    add_product(&sum, w[1], minor_of(u[2], u[0], v[2], v[0]));
+    add_product(&sum, w[2], minor_of(u[0], u[1], v[0], v[1]));
+    return sign_of_parts(&sum);
 }
 
 double enf_points_unit(const double *const *points, int count) {
@@ -53,4 +72,111 @@ int enf_points_orient(const double a[3], const double b[3], const double c[3], c
     // Few significant bits: nothing above was rounded, and 0 is 0.
     if (magnitude < 0x1p53 * unit * unit * unit) return determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
     return orient_exactly(a, b, c, d);
+}
+
+bool enf_points_collinear(const double a[3], const double b[3], const double c[3]) {
+    int64_t u[3], v[3];
+    subtract_points(b, a, u);
+    subtract_points(c, a, v);
+    return minor_of(u[1], u[2], v[1], v[2]) == 0 && minor_of(u[2], u[0], v[2], v[0]) == 0 &&
+           minor_of(u[0], u[1], v[0], v[1]) == 0;
+}
+
+// ---------------------------------------------------------------------------------------------- spheres
+
+enum { SUM_LIMBS = 5 };
+
+/// sum += factor * lift, modulo 2^320, in two's complement; |factor| < 2^191.
+static void add_lifted(uint64_t sum[SUM_LIMBS], const parts *factor, enf_uint128 lift) {
+    const enf_int128 upper = factor->high + (factor->low >> 64);
+    const uint64_t limb[3] = {(uint64_t)factor->low, (uint64_t)upper, (uint64_t)(upper >> 64)};
+    uint64_t product[SUM_LIMBS] = {0};
+    for (int j = 0; j < 2; j++) {
+        const uint64_t part = (uint64_t)(lift >> 64 * j);
+        uint64_t carry = 0;
+        for (int i = 0; i < 3; i++) {
+            enf_uint128 value = (enf_uint128)limb[i] * part + product[i + j] + carry;
+            product[i + j] = (uint64_t)value;
+            carry = (uint64_t)(value >> 64);
+        }
+        product[3 + j] = carry;
+    }
+    if (upper < 0) { // the limbs say 2^192 more than the factor is
+        enf_uint128 top = ((enf_uint128)product[4] << 64 | product[3]) - lift;
+        product[3] = (uint64_t)top;
+        product[4] = (uint64_t)(top >> 64);
+    }
+    uint64_t carry = 0;
+    for (int i = 0; i < SUM_LIMBS; i++) {
+        enf_uint128 value = (enf_uint128)sum[i] + product[i] + carry;
+        sum[i] = (uint64_t)value;
+        carry = (uint64_t)(value >> 64);
+    }
+}
+
+static enf_uint128 lift_of(const int64_t v[3]) {
+    enf_int128 lift = 0;
+    for (int i = 0; i < 3; i++) lift += (enf_int128)v[i] * v[i];
+    return (enf_uint128)lift;
+}
+
+/// z[0] * minor[0] + z[1] * minor[1] + z[2] * minor[2], all with their signs turned if `negative`.
+static parts volume_of(const int64_t z[3], const enf_int128 minor[3], bool negative) {
+    parts sum = {0, 0};
+    for (int i = 0; i < 3; i++) add_product(&sum, negative ? -z[i] : z[i], minor[i]);
+    return sum;
+}
+
+/// Rows a, b, c, d of the matrix (x, y, z, x^2 + y^2 + z^2) of the corners as seen from the point.
+/// Apart, so that the many that need it not do not save its registers.
+__attribute__((noinline)) static int side_of_sphere_exactly(const double *const corner[4],
+                                                            const double point[3]) {
+    int64_t v[4][3];
+    for (int i = 0; i < 4; i++) subtract_points(corner[i], point, v[i]);
+    enf_int128 near[4], across[2]; // of x and y: of rows (i, i + 1), and of (i, i + 2)
+    for (int i = 0; i < 4; i++) near[i] = minor_of(v[i][0], v[i][1], v[(i + 1) % 4][0], v[(i + 1) % 4][1]);
+    for (int i = 0; i < 2; i++) across[i] = minor_of(v[i][0], v[i][1], v[i + 2][0], v[i + 2][1]);
+    uint64_t sum[SUM_LIMBS] = {0};
+    for (int i = 0; i < 4; i++) { // along the last column: the signs alternate
+        const int b = (i + 1) % 4, c = (i + 2) % 4, d = (i + 3) % 4;
+        const int64_t z[3] = {v[b][2], v[c][2], v[d][2]};
+        const enf_int128 minor[3] = {near[c], b < 2 ? -across[b] : across[b - 2], near[b]};
+        const parts volume = volume_of(z, minor, i % 2);
+        add_lifted(sum, &volume, lift_of(v[i]));
+    }
+    if (sum[SUM_LIMBS - 1] >> 63) return -1;
+    for (int i = 0; i < SUM_LIMBS; i++) {
+        if (sum[i]) return 1;
+    }
+    return 0;
+}
+
+/// Shewchuk's bound A for insphere: (16 + 224u)u times the exact sum of magnitudes.
+#define SPHERE_ERROR (17 * 0x1p-53)
+
+/// Is the determinant so large that its sign is sure? No lift is above `largest`, so no coordinate is above
+/// its root: the sum of magnitudes is at most 4 * 6 * largest^2.5. Squares spare the root.
+static bool is_sure(double determinant, double largest) {
+    const double square = largest * largest, factor = 24 * SPHERE_ERROR;
+    return determinant * determinant > factor * factor * (square * square * largest);
+}
+
+int enf_points_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
+                              const double point[3]) {
+    const double *const corner[4] = {a, b, c, d};
+    double x[4], y[4], z[4], lift[4];
+    for (int i = 0; i < 4; i++) {
+        x[i] = corner[i][0] - point[0];
+        y[i] = corner[i][1] - point[1];
+        z[i] = corner[i][2] - point[2];
+        lift[i] = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+    }
+    double ab = x[0] * y[1] - x[1] * y[0], bc = x[1] * y[2] - x[2] * y[1], cd = x[2] * y[3] - x[3] * y[2],
+           da = x[3] * y[0] - x[0] * y[3], ac = x[0] * y[2] - x[2] * y[0], bd = x[1] * y[3] - x[3] * y[1];
+    double abc = z[0] * bc - z[1] * ac + z[2] * ab, bcd = z[1] * cd - z[2] * bd + z[3] * bc,
+           cda = z[2] * da + z[3] * ac + z[0] * cd, dab = z[3] * ab + z[0] * bd + z[1] * da;
+    double determinant = (lift[0] * bcd - lift[1] * cda) + (lift[2] * dab - lift[3] * abc);
+    double low = lift[0] > lift[1] ? lift[0] : lift[1], high = lift[2] > lift[3] ? lift[2] : lift[3];
+    if (is_sure(determinant, low > high ? low : high)) return determinant > 0 ? 1 : -1;
+    return side_of_sphere_exactly(corner, point);
 }

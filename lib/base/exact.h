@@ -4,9 +4,19 @@
 #ifndef ENF_BASE_EXACT_H
 #define ENF_BASE_EXACT_H
 
+#include <stdbool.h>
+
 /// Sign of det(b - a, c - a, d - a): +1 if d is in front of the plane through a, b, c (they turn
 /// counter-clockwise seen from d), -1 behind it, 0 if the four lie in one plane.
 int enf_points_orient(const double a[3], const double b[3], const double c[3], const double d[3]);
+
+/// Do the three points lie on a line?
+bool enf_points_collinear(const double a[3], const double b[3], const double c[3]);
+
+/// Is the point inside the sphere through a, b, c, d (+1), outside (-1) or on it (0)? They must be positively
+/// oriented (enf_points_orient > 0); the sign is the opposite if they are negatively oriented.
+int enf_points_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
+                              const double point[3]);
 
 /// The largest power of two that divides all three coordinates of all `count` points; 2^53 if they are all 0.
 /// Sums and products of multiples of a unit are exact in a double while they stay below 2^53 units.

@@ -8,6 +8,7 @@
 #include "base/timer.h"
 #include "build/arrangement.h"
 #include "build/connect.h"
+#include "build/delaunay.h"
 #include "build/hairline.h"
 #include "build/split.h"
 #include "build/tet_order.h"
@@ -88,15 +89,15 @@ static enf_status tetrahedralize(kitchen *k) {
     enf_tetrahedra made = {0};
     bool tetgen = k->options->tetrahedralizer == ENF_TETRAHEDRALIZER_TETGEN;
     status = tetgen ? enf_shim_delaunay_tetgen(mesh->points, mesh->point_count, &made, k->error)
-                    : enf_shim_delaunay_cgal(mesh->points, mesh->point_count, &made, k->error);
+                    : enf_delaunay(mesh->points, mesh->point_count, &made, k->error);
     if (status != ENF_OK) return status;
-    if (!enf_tetrahedra_sort(made.corners, made.count, mesh->points, mesh->point_count)) {
+    if (!enf_tetrahedra_sort(&made.corners, made.count, mesh->points, mesh->point_count)) {
         free(made.corners);
         return enf_fail_memory(k->error, "the tetrahedra");
     }
     status = enf_tet_mesh_pair(&k->tets, made.corners, made.count, (int32_t)mesh->point_count, k->error);
     if (status != ENF_OK) return status;
-    say(k, "%d tetrahedra by %s", (int)k->tets.count, tetgen ? "TetGen" : "CGAL");
+    say(k, "%d tetrahedra%s", (int)k->tets.count, tetgen ? " by TetGen" : "");
     enf_memory_count_tetrahedra(counts, mesh, &k->tets);
     k->build->peak_bytes_predicted = enf_memory_estimate(counts);
     return enf_memory_admit(counts, k->options->memory, k->error);

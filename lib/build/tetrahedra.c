@@ -12,50 +12,73 @@ void enf_tet_mesh_free(enf_tet_mesh *mesh) {
     free(mesh->facet_corners);
     free(mesh->facet_sides);
     free(mesh->point_tetrahedron);
-    free(mesh->facet_table);
+    free(mesh->slot_begin);
+    free(mesh->slots);
     memset(mesh, 0, sizeof *mesh);
+}
+
+/// Puts two corners in ascending order; 1 if they were not, 0 if they were.
+static int order(int32_t *a, int32_t *b) {
+    const int32_t first = *a, second = *b;
+    const int turned = first > second;
+    *a = turned ? second : first;
+    *b = turned ? first : second;
+    return turned;
 }
 
 /// The three corners other than `opposite`, ascending. Returns the side of their plane (1 in front, 0 behind)
 /// on which the fourth corner of a positively oriented tetrahedron lies.
 static int sorted_face(const int32_t tetrahedron[4], int opposite, int32_t face[3]) {
     int side = opposite & 1; // (1,2,3|0) and (0,1,3|2) are odd permutations, the other two even
-    for (int i = 0, n = 0; i < 4; i++) {
-        if (i != opposite) face[n++] = tetrahedron[i];
-    }
-    static const int steps[3][2] = {{0, 1}, {1, 2}, {0, 1}};
-    for (int i = 0; i < 3; i++) {
-        int a = steps[i][0], b = steps[i][1];
-        if (face[a] < face[b]) continue;
-        int32_t swap = face[a];
-        face[a] = face[b];
-        face[b] = swap;
-        side ^= 1;
-    }
-    return side;
+    for (int k = 0; k < 3; k++) face[k] = tetrahedron[k + (k >= opposite)];
+    side ^= order(&face[0], &face[1]);
+    side ^= order(&face[1], &face[2]);
+    return side ^ order(&face[0], &face[1]);
 }
 
-static uint64_t hash_face(const int32_t face[3]) {
-    uint64_t hash = (uint64_t)(uint32_t)face[0] * UINT64_C(0x9E3779B97F4A7C15);
-    hash = (hash ^ (hash >> 29) ^ (uint32_t)face[1]) * UINT64_C(0xBF58476D1CE4E5B9);
-    hash = (hash ^ (hash >> 32) ^ (uint32_t)face[2]) * UINT64_C(0x94D049BB133111EB);
-    return hash ^ (hash >> 31);
+static uint32_t hash_edge(int32_t a, int32_t b) {
+    return (uint32_t)((((uint64_t)(uint32_t)a << 32 | (uint32_t)b) * UINT64_C(0x9E3779B97F4A7C15)) >> 32);
 }
 
-/// Where the face is in the table, or where it would be.
-static size_t slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
-    size_t slot = hash_face(face) & mesh->facet_table_mask;
-    for (int32_t facet; (facet = mesh->facet_table[slot]) >= 0; slot = (slot + 1) & mesh->facet_table_mask) {
-        if (memcmp(mesh->facet_corners[facet], face, 3 * sizeof *face) == 0) break;
+/// The slot of the face with these ascending corners, or where it would be. The lowest corner says where to
+/// look, so that faces that are near in space are near in memory.
+static int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
+    int32_t *slots = mesh->slots + mesh->slot_begin[face[0]];
+    const uint32_t count = mesh->slot_begin[face[0] + 1] - mesh->slot_begin[face[0]];
+    uint32_t at = (uint32_t)((uint64_t)hash_edge(face[1], face[2]) * count >> 32);
+    for (int32_t facet; (facet = slots[at]) >= 0; at = at + 1 < count ? at + 1 : 0) {
+        if (mesh->facet_corners[facet][1] == face[1] && mesh->facet_corners[facet][2] == face[2]) break;
     }
-    return slot;
+    return &slots[at];
 }
 
 int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c) {
     const int32_t corners[4] = {a, b, c, -1};
     int32_t face[3];
     sorted_face(corners, 3, face);
-    return mesh->facet_table[slot_of(mesh, face)];
+    return *slot_of(mesh, face);
+}
+
+/// A slot for every face of every tetrahedron, by its lowest corner, and a free one at each corner. Most
+/// faces come twice: that leaves half of the slots free.
+static enf_status make_slots(enf_tet_mesh *mesh, enf_error *error) {
+    uint32_t *begin = mesh->slot_begin = enf_array_zeroed((size_t)mesh->point_count + 1, sizeof *begin);
+    if (!begin) return enf_fail_memory(error, "the tetrahedra's faces");
+    for (int32_t t = 0; t < mesh->count; t++) { // three faces have the lowest corner, one the next
+        int32_t pair[2][2], *one = pair[0], *other = pair[1];
+        memcpy(pair, mesh->corners[t], sizeof pair);
+        order(&one[0], &one[1]);
+        order(&other[0], &other[1]);
+        order(&one[0], &other[0]);
+        begin[one[0] + 1] += 3;
+        begin[(one[1] < other[0] ? one[1] : other[0]) + 1]++;
+    }
+    for (int32_t i = 0; i < mesh->point_count; i++) begin[i + 1] += begin[i] + 1;
+    const size_t slots = begin[mesh->point_count];
+    mesh->slots = enf_array_new(slots, sizeof *mesh->slots);
+    if (!mesh->slots) return enf_fail_memory(error, "the tetrahedra's faces");
+    memset(mesh->slots, 0xff, slots * sizeof *mesh->slots); // -1
+    return ENF_OK;
 }
 
 static enf_status pair_faces(enf_tet_mesh *mesh, enf_error *error) {
@@ -63,10 +86,9 @@ static enf_status pair_faces(enf_tet_mesh *mesh, enf_error *error) {
         for (int k = 0; k < 4; k++) {
             int32_t face[3];
             int side = sorted_face(mesh->corners[t], k, face);
-            size_t slot = slot_of(mesh, face);
-            int32_t facet = mesh->facet_table[slot];
+            int32_t *slot = slot_of(mesh, face), facet = *slot;
             if (facet < 0) {
-                facet = mesh->facet_table[slot] = mesh->facet_count++;
+                facet = *slot = mesh->facet_count++;
                 memcpy(mesh->facet_corners[facet], face, sizeof face);
                 mesh->facet_sides[facet][0] = mesh->facet_sides[facet][1] = -1;
             }
@@ -84,6 +106,21 @@ static enf_status pair_faces(enf_tet_mesh *mesh, enf_error *error) {
     return ENF_OK;
 }
 
+/// Finds a tetrahedron at each point: the first.
+static enf_status find_tetrahedra(enf_tet_mesh *mesh, enf_error *error) {
+    for (int32_t i = 0; i < mesh->point_count; i++) mesh->point_tetrahedron[i] = -1;
+    for (int32_t t = mesh->count - 1; t >= 0; t--) {
+        for (int k = 0; k < 4; k++) mesh->point_tetrahedron[mesh->corners[t][k]] = t;
+    }
+    for (int32_t i = 0; i < mesh->point_count; i++) {
+        if (mesh->point_tetrahedron[i] >= 0) continue;
+        return enf_fail(error, ENF_NO_RESOURCES,
+                        "the tetrahedralizer left out point %d; try the other one (--tetrahedralizer)",
+                        (int)i);
+    }
+    return ENF_OK;
+}
+
 enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t count, int32_t point_count,
                              enf_error *error) {
     memset(mesh, 0, sizeof *mesh);
@@ -94,32 +131,16 @@ enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t c
     }
     mesh->count = (int32_t)count;
     mesh->point_count = point_count;
-    size_t slots = 16;
-    while (slots < 3 * count) slots *= 2; // there are about twice as many facets as tetrahedra
-    mesh->facet_table = enf_array_new(slots, sizeof *mesh->facet_table);
-    mesh->facet_table_mask = slots - 1;
     mesh->facets = enf_array_new(count, sizeof *mesh->facets);
     mesh->facet_corners = enf_array_new(4 * count, sizeof *mesh->facet_corners);
     mesh->facet_sides = enf_array_new(4 * count, sizeof *mesh->facet_sides);
     mesh->point_tetrahedron = enf_array_new((size_t)point_count, sizeof *mesh->point_tetrahedron);
     enf_status status = ENF_OK;
-    if (!mesh->facet_table || !mesh->facets || !mesh->facet_corners || !mesh->facet_sides ||
-        !mesh->point_tetrahedron) {
+    if (!mesh->facets || !mesh->facet_corners || !mesh->facet_sides || !mesh->point_tetrahedron)
         status = enf_fail_memory(error, "the tetrahedra's faces");
-    } else {
-        for (size_t i = 0; i < slots; i++) mesh->facet_table[i] = -1;
-        for (int32_t i = 0; i < point_count; i++) mesh->point_tetrahedron[i] = -1;
-        for (int32_t t = mesh->count - 1; t >= 0; t--) {
-            for (int k = 0; k < 4; k++) mesh->point_tetrahedron[corners[t][k]] = t;
-        }
-        status = pair_faces(mesh, error);
-        for (int32_t i = 0; i < point_count && status == ENF_OK; i++) {
-            if (mesh->point_tetrahedron[i] >= 0) continue;
-            status = enf_fail(error, ENF_NO_RESOURCES,
-                              "the tetrahedralizer left out point %d; try the other one (--tetrahedralizer)",
-                              (int)i);
-        }
-    }
+    if (!status) status = make_slots(mesh, error);
+    if (!status) status = pair_faces(mesh, error);
+    if (!status) status = find_tetrahedra(mesh, error);
     if (status != ENF_OK) {
         enf_tet_mesh_free(mesh);
         return status;

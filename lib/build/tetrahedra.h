@@ -17,8 +17,8 @@ typedef struct enf_tet_mesh {
     int32_t point_count;
     int32_t *point_tetrahedron; ///< one tetrahedron at each point, or -1
 
-    int32_t *facet_table; ///< facets by their corners: open hashing, -1 = free
-    size_t facet_table_mask;
+    uint32_t *slot_begin; ///< point_count + 1: where the slots of each lowest corner begin
+    int32_t *slots;       ///< facets by their corners; -1: free. Open hashing among those of a lowest corner
 } enf_tet_mesh;
 
 void enf_tet_mesh_free(enf_tet_mesh *mesh);
