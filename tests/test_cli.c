@@ -281,7 +281,7 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"bench stability --first -1", "'-1' is no whole number"},
         {"bench growth --worlds jungle", "no world is left"},
         {"bench growth --largest 9999", "no world is left"},
-        {"bench growth --runs 100", "--runs: at most 99"},
+        {"bench growth --runs 0", "--runs: '0'"},
         {"bench soups --soup gazpacho", "there is no soup 'gazpacho'"},
     };
     write_text("box.obj", BOX);
