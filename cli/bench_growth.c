@@ -168,7 +168,8 @@ static enf_status measure_files(const table *table, const char *world, const cha
     for (int i = 0; i < table->runs && !status; i++) {
         status = run_child(table->shared, world, output, 1, error);
         take_least(row->column, column, MEASURED);
-        if (!status) status = run_child(table->shared, world, output, table->threads, error);
+        if (!status && table->threads > 1)
+            status = run_child(table->shared, world, output, table->threads, error);
         take_least(&row->column[CLOCK_THREADS], &column[CLOCK], 2);
     }
     row->column[SPLIT_GAIN] = row->column[SPLIT_CLOCK] / row->column[SPLIT_CLOCK_THREADS];
@@ -235,6 +236,7 @@ static void judge_family(const table *table, const row *rows, int count) {
         printf("%s: %.0f polygons take one core %.1f s (%.1f s by the clock); at most %.0f s: %s\n", family,
                last->column[POLYGONS], last->column[TOTAL], last->column[CLOCK], million_seconds,
                verdict(last->column[TOTAL] <= million_seconds));
+    if (table->threads == 1) return;
     printf("%s: splitting the largest is %.2f times as fast with %d threads as with one; at least %.1f with "
            "two: %s\n",
            family, last->column[SPLIT_GAIN], table->threads, gain_least,
@@ -282,8 +284,8 @@ static enf_status run_worlds(table *table, enf_error *error) {
 int cli_bench_growth(int argc, char **argv) {
     table table = {.threads = 2, .runs = 1, .largest = million};
     cli_option options[] = {
-        {"--threads", 0, CLI_COUNT, &table.threads, "N", "compare one thread with so many; default 2", NULL,
-         false},
+        {"--threads", 0, CLI_COUNT, &table.threads, "N",
+         "compare one thread with so many; default 2, 1 for none", NULL, false},
         {"--runs", 0, CLI_COUNT, &table.runs, "N", "the least of so many runs; default 1", NULL, false},
         {"--largest", 0, CLI_LENGTH, &table.largest, "N", "only worlds of about N polygons or fewer", NULL,
          false},
