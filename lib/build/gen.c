@@ -27,7 +27,7 @@ static const entry entries[] = {
     {"cavern", "six irregular rooms, seven flaring passages, no axis-aligned face", enf_gen_cavern, 0},
     {"caverns",
      "floors=F storeys of rooms=R irregular rooms, passages and shafts; detail=N makes the rock finer",
-     enf_gen_caverns, 1.5e5}, // about 700 triangles each
+     enf_gen_caverns, 1.5e5}, // about 970 triangles each
     {"furnished", "a room with a perturbed wall, a table and chairs, and a small room next door",
      enf_gen_furnished, 0},
     {"office",
