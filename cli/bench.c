@@ -14,6 +14,7 @@ static const cli_command benches[] = {
     {"cells", "DIR: soup to coloured cells against the Delaunay triangulation alone", cli_bench_cells},
     {"solid", "DIR: solid or air against the union of the brushes", cli_bench_solid},
     {"recovery", "DIR: levels rotated and rounded, against themselves", cli_bench_recovery},
+    {"growth", "offices and caverns up to a million polygons: time, memory, exponents", cli_bench_growth},
     {"soups", "soups that others choke on: time, memory, cells", cli_bench_soups},
     {"stability", "families of random soups: check, oracles, times", cli_bench_stability},
 };

@@ -20,6 +20,9 @@ int cli_bench_cells(int argc, char **argv);
 int cli_bench_solid(int argc, char **argv);
 /// Every level in a folder as tools leave it: rotated, rounded; compared with itself.
 int cli_bench_recovery(int argc, char **argv);
+/// Offices and caverns of growing size, each compiled in a process of its own; a row each, then the
+/// exponents.
+int cli_bench_growth(int argc, char **argv);
 /// Named soups that others choke on, each in a process of its own; a row each.
 int cli_bench_soups(int argc, char **argv);
 /// Families of random soups, each run in a process of its own; a row per family, and one per failure.

@@ -29,6 +29,7 @@ enum {
     TOTAL = STAGE + STAGES,
     TIME_RATIO,
     PEAK,
+    EXACT, ///< share of the predicates that the filter left to exact arithmetic
     COLUMN_COUNT
 };
 
@@ -36,10 +37,10 @@ static const struct column {
     const char *name;
     int digits; ///< after the point
 } columns[COLUMN_COUNT] = {
-    {"triangles", 0},  {"tetrahedra", 0}, {"fine_cells", 0},       {"fine_cells/tetrahedra", 3},
-    {"delaunay_s", 4}, {"clean_s", 4},    {"tetrahedralize_s", 4}, {"split_s", 4},
-    {"connect_s", 4},  {"colour_s", 4},   {"total_s", 4},          {"total/delaunay", 2},
-    {"peak_mb", 1},
+    {"triangles", 0},  {"tetrahedra", 0},  {"fine_cells", 0},       {"fine_cells/tetrahedra", 3},
+    {"delaunay_s", 4}, {"clean_s", 4},     {"tetrahedralize_s", 4}, {"split_s", 4},
+    {"connect_s", 4},  {"colour_s", 4},    {"total_s", 4},          {"total/delaunay", 2},
+    {"peak_mb", 1},    {"exact_share", 5},
 };
 
 typedef struct row {
@@ -94,6 +95,7 @@ static enf_status run_once(enf_soup *soup, int run, clocks *clocks, row *row, en
         row->column[PEAK] = (double)enf_memory_peak() / 1e6;
         row->column[TETRAHEDRA] = build.complex.tetrahedron_count;
         row->column[FINE_CELLS] = build.complex.cell_count;
+        row->column[EXACT] = enf_complex_tier_share(&build.complex, ENF_TIER_EXACT);
         row->column[CELL_RATIO] = row->column[FINE_CELLS] / row->column[TETRAHEDRA];
     }
     if (!status)
@@ -180,7 +182,9 @@ int cli_bench_cells(int argc, char **argv) {
             "Soup to coloured cells (clean, tetrahedralize, split, connect, colour) of every level in a\n"
             "folder, on one thread, in processor seconds, against CGAL's spatially sorted Delaunay\n"
             "triangulation of the same vertices. Peak memory is that of the whole process up to colour,\n"
-            "reading included. CSV; the last row has the medians and the largest peak.",
+            "reading included; exact_share is of the predicates that the filter left to exact arithmetic. "
+            "CSV;\n"
+            "the last row has the medians and the largest peak.",
         .options = options,
         .operands_min = 1,
         .operands_max = 1,

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far can decimation go before two spawn points share a cell?
-#ifndef _GNU_SOURCE
-#define _GNU_SOURCE // asprintf, mkstemps
-#endif
-#include "build/gen.h"
 #include "cli/bench.h"
+#include "cli/bench_world.h"
 #include "cli/cli.h"
 #include "cli/job.h"
 
@@ -13,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const char *const worlds[] = {"four-rooms", "four-rooms-tessellated", "four-rooms-distorted",
                                      "cavern"};
@@ -75,27 +71,6 @@ static enf_status find_reach(const cli_texts *inputs, cli_settings settings, int
     return ENF_OK;
 }
 
-/// Writes the world to a temporary file; its path is the caller's to free and unlink.
-static enf_status make_world(const char *name, const char *const *settings, size_t count, char **path,
-                             enf_error *error) {
-    const char *folder = getenv("TMPDIR");
-    if (asprintf(path, "%s/enfilade-XXXXXX.obj", folder ? folder : P_tmpdir) < 0) {
-        *path = NULL;
-        return enf_fail_memory(error, "a path");
-    }
-    int descriptor = mkstemps(*path, 4);
-    FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
-    if (!file) {
-        if (descriptor >= 0) close(descriptor);
-        return enf_fail(error, ENF_NO_RESOURCES, "%s: can't be written; set TMPDIR to a folder that can",
-                        *path);
-    }
-    enf_status status = enf_gen_write(name, settings, count, file, error);
-    if (fclose(file) != 0 && !status)
-        status = enf_fail(error, ENF_NO_RESOURCES, "%s: can't be written", *path);
-    return status;
-}
-
 static void print_reach(const reach *reach, int32_t rooms) {
     if (reach->cells < 0)
         printf(" %7s %9s %9s", "never", "", "");
@@ -126,7 +101,7 @@ static enf_status print_sizes(const char *name, const cli_job *job, const cli_te
 static enf_status run_world(const char *name, const char *const *gen_settings, size_t gen_count,
                             cli_settings settings, enf_error *error) {
     char *path = NULL;
-    enf_status status = make_world(name, gen_settings, gen_count, &path, error);
+    enf_status status = cli_world_make(name, gen_settings, gen_count, &path, error);
     cli_texts inputs = {0};
     if (!status && !cli_texts_add(&inputs, path)) status = enf_fail_memory(error, "a list");
     for (int heuristic = 0; !status && heuristic < ENF_HEURISTIC_COUNT; heuristic++) {
@@ -142,8 +117,7 @@ static enf_status run_world(const char *name, const char *const *gen_settings, s
     }
     if (!status) putchar('\n');
     free(inputs.items);
-    if (path) unlink(path);
-    free(path);
+    cli_world_remove(path);
     return status;
 }
 

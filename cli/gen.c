@@ -36,8 +36,10 @@ int cli_gen(int argc, char **argv) {
     const cli_syntax syntax = {
         .command = "enfilade gen",
         .usage = "NAME [key=value]... -o OUT.obj    (enfilade gen list: the names)",
-        .summary = "Writes a test world as OBJ. Every world takes scale=S, noise=A, seed=N,\n"
-                   "rotate=AX,AY,AZ (degrees) and translate=X,Y,Z; office also floors=F, rooms=R, detail=N.",
+        .summary =
+            "Writes a test world as OBJ. Every world takes scale=S, noise=A, seed=N,\n"
+            "rotate=AX,AY,AZ (degrees) and translate=X,Y,Z; office and caverns also floors=F, rooms=R,\n"
+            "detail=N.",
         .options = options,
         .operands_min = 1,
         .operands_max = INT_MAX,

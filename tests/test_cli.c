@@ -279,6 +279,9 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"bench cells . --runs 0", "--runs: '0'"},
         {"bench stability --family nobles", "there is no 'nobles'"},
         {"bench stability --first -1", "'-1' is no whole number"},
+        {"bench growth --worlds jungle", "no world is left"},
+        {"bench growth --largest 9999", "no world is left"},
+        {"bench growth --runs 0", "--runs: '0'"},
         {"bench soups --soup gazpacho", "there is no soup 'gazpacho'"},
     };
     write_text("box.obj", BOX);
@@ -304,6 +307,7 @@ static void help_and_version_are_data(void **state) {
         {"gen list", "four-rooms-distorted"},
         {"bench --help", "thesis"},
         {"bench stability --help", "--seeds"},
+        {"bench growth --help", "--largest"},
         {"bench soups --help", "--limit"},
         {"bench stability --seeds 2 --family rotations", "\nrotations,2,0,0,0,0,0,"},
         {"bench soups --soup cubes-1000-1e-12 --memory 0", "check holds"},
@@ -339,6 +343,20 @@ static void benches_over_a_folder_print_a_row_per_level(void **state) {
     assert_int_equal(wrong, 0);
     process_free(&ran);
     expect_failure("bench cells . --levels nothing", 3, "holds no levels that match");
+}
+
+/// A row for each world; what one size can't tell is said, and a bar that is missed is no failure.
+static void growth_prints_a_row_per_world_and_a_verdict(void **state) {
+    (void)state;
+    process ran = run_enfilade(NULL, "bench growth --largest 10000 --runs 2");
+    assert_int_equal(ran.status, 0);
+    assert_string_equal(ran.err, "");
+    assert_non_null(strstr(ran.out, "world,polygons,tetrahedra,fine_cells,cells,read_s,"));
+    assert_non_null(strstr(ran.out, "\noffice floors=1 rooms=7 detail=3,12096,"));
+    assert_non_null(strstr(ran.out, "\ncaverns floors=1 rooms=3 detail=2,9440,"));
+    assert_non_null(strstr(ran.out, "\noffice: one size alone has no exponent\n"));
+    assert_non_null(strstr(ran.out, "\ncaverns: splitting the largest is "));
+    process_free(&ran);
 }
 
 static void damaged_world_files_are_refused(void **state) {
@@ -441,6 +459,7 @@ int main(void) {
         cmocka_unit_test(bad_options_are_refused_with_the_usage_line),
         cmocka_unit_test(help_and_version_are_data),
         cmocka_unit_test(benches_over_a_folder_print_a_row_per_level),
+        cmocka_unit_test(growth_prints_a_row_per_world_and_a_verdict),
         cmocka_unit_test(damaged_world_files_are_refused),
         cmocka_unit_test(locate_answers_line_by_line_until_one_is_malformed),
         cmocka_unit_test(a_killed_compile_leaves_the_old_file_or_the_new_one),

@@ -3,7 +3,7 @@
 // arithmetic and fast robust geometric predicates" (1997), first stage; the exact tier is plain integers.
 #include "base/exact.h"
 
-#include "base/wide.h"
+#include "base/limbs.h"
 
 #include <math.h>
 
@@ -35,7 +35,7 @@ static void subtract_points(const double to[3], const double from[3], int64_t di
     for (int i = 0; i < 3; i++) difference[i] = (int64_t)to[i] - (int64_t)from[i];
 }
 
-static int orient_exactly(const double a[3], const double b[3], const double c[3], const double d[3]) {
+int enf_points_orient_exactly(const double a[3], const double b[3], const double c[3], const double d[3]) {
     int64_t u[3], v[3], w[3];
     subtract_points(b, a, u);
     subtract_points(c, a, v);
@@ -55,7 +55,7 @@ double enf_points_unit(const double *const *points, int count) {
     return (double)(bits & -bits);
 }
 
-int enf_points_orient(const double a[3], const double b[3], const double c[3], const double d[3]) {
+int enf_points_orient_quickly(const double a[3], const double b[3], const double c[3], const double d[3]) {
     double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
     double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
     double wx = d[0] - a[0], wy = d[1] - a[1], wz = d[2] - a[2];
@@ -71,7 +71,12 @@ int enf_points_orient(const double a[3], const double b[3], const double c[3], c
     double unit = enf_points_unit((const double *const[]){a, b, c, d}, 4);
     // Few significant bits: nothing above was rounded, and 0 is 0.
     if (magnitude < 0x1p53 * unit * unit * unit) return determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
-    return orient_exactly(a, b, c, d);
+    return ENF_UNSURE;
+}
+
+int enf_points_orient(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    int sign = enf_points_orient_quickly(a, b, c, d);
+    return sign == ENF_UNSURE ? enf_points_orient_exactly(a, b, c, d) : sign;
 }
 
 bool enf_points_collinear(const double a[3], const double b[3], const double c[3]) {

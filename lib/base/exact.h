@@ -10,6 +10,12 @@
 /// counter-clockwise seen from d), -1 behind it, 0 if the four lie in one plane.
 int enf_points_orient(const double a[3], const double b[3], const double c[3], const double d[3]);
 
+enum { ENF_UNSURE = 2 };
+
+/// The two tiers of the same: what doubles can tell, or ENF_UNSURE; and whole numbers.
+int enf_points_orient_quickly(const double a[3], const double b[3], const double c[3], const double d[3]);
+int enf_points_orient_exactly(const double a[3], const double b[3], const double c[3], const double d[3]);
+
 /// Do the three points lie on a line?
 bool enf_points_collinear(const double a[3], const double b[3], const double c[3]);
 

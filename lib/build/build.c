@@ -122,13 +122,10 @@ static enf_status connect(kitchen *k) {
     enf_complex *complex = &k->build->complex;
     enf_status status = enf_complex_connect(complex, &k->arrangement, &k->crew, k->error);
     if (status != ENF_OK) return status;
-    const uint64_t *tier = complex->predicates;
-    double all = (double)(tier[ENF_TIER_FILTER] + tier[ENF_TIER_PAIRS] + tier[ENF_TIER_EXACT]);
-    double part = all > 0 ? 100 / all : 0;
-    say(k,
-        "%d facets in %d pieces; of %.3g predicates %.3f %% needed pairs of doubles, %.3f %% exact numbers",
-        (int)complex->facet_count, (int)complex->pieces.count, all, part * (double)tier[ENF_TIER_PAIRS],
-        part * (double)tier[ENF_TIER_EXACT]);
+    say(k, "%d facets in %d pieces; %.3f %% of the predicates took pairs of doubles, %.3f %% exact numbers",
+        (int)complex->facet_count, (int)complex->pieces.count,
+        100 * enf_complex_tier_share(complex, ENF_TIER_PAIRS),
+        100 * enf_complex_tier_share(complex, ENF_TIER_EXACT));
     return ENF_OK;
 }
 

@@ -99,6 +99,13 @@ typedef struct enf_complex {
 
 void enf_complex_free(enf_complex *complex);
 
+/// The share of the predicates that a tier decided (see geometry.h); 0 if there were none.
+static inline double enf_complex_tier_share(const enf_complex *complex, int tier) {
+    double all = 0;
+    for (int i = 0; i < ENF_TIERS; i++) all += (double)complex->predicates[i];
+    return all > 0 ? (double)complex->predicates[tier] / all : 0;
+}
+
 /// The corners of a cover or piece: its own, or its facet's. *count receives their number.
 const enf_corner *enf_complex_cover(const enf_complex *complex, int32_t cover, int32_t facet, int32_t *count);
 const enf_corner *enf_complex_piece(const enf_complex *complex, int32_t piece, int32_t *count);

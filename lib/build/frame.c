@@ -7,7 +7,7 @@
 #include "build/frame.h"
 
 #include "base/hash.h"
-#include "base/wide.h"
+#include "base/limbs.h"
 
 #include <float.h>
 #include <math.h>

@@ -14,23 +14,26 @@ typedef void generator(enf_gen_world *world, const enf_gen_options *options);
 typedef struct entry {
     const char *name, *description;
     generator *make;
-    bool sized; // takes floors=, rooms=, detail=
+    double size_max; // of floors * rooms * detail^2; 0: takes none of these
 } entry;
 
 static const entry entries[] = {
     {"four-rooms", "four unaligned rooms in a ring, joined by four short corridors, in the fewest triangles",
-     enf_gen_four_rooms, false},
+     enf_gen_four_rooms, 0},
     {"four-rooms-tessellated", "the same rooms in roughly equal triangles", enf_gen_four_rooms_tessellated,
-     false},
+     0},
     {"four-rooms-distorted", "the same rooms, each turned about all axes, some corners displaced",
-     enf_gen_four_rooms_distorted, false},
-    {"cavern", "six irregular rooms, seven flaring passages, no axis-aligned face", enf_gen_cavern, false},
+     enf_gen_four_rooms_distorted, 0},
+    {"cavern", "six irregular rooms, seven flaring passages, no axis-aligned face", enf_gen_cavern, 0},
+    {"caverns",
+     "floors=F storeys of rooms=R irregular rooms, passages and shafts; detail=N makes the rock finer",
+     enf_gen_caverns, 1.5e5}, // about 970 triangles each
     {"furnished", "a room with a perturbed wall, a table and chairs, and a small room next door",
-     enf_gen_furnished, false},
+     enf_gen_furnished, 0},
     {"office",
      "floors=F storeys of rooms=R rooms each, corridors, stairs, windows; detail=N splits every wall",
-     enf_gen_office, true},
-    {"post", "a square post with four rooms around it", enf_gen_post_world, false},
+     enf_gen_office, 1e6}, // about 108 triangles each
+    {"post", "a square post with four rooms around it", enf_gen_post_world, 0},
 };
 
 enum {
@@ -40,8 +43,7 @@ enum {
     DETAIL_MAX = 100
 };
 
-static const double number_max = 1e12;     // any length, factor or angle
-static const double office_size_max = 1e6; // floors * rooms * detail^2; about 108 triangles each
+static const double number_max = 1e12; // any length, factor or angle
 
 const char *enf_gen_list(size_t index, const char **description) {
     if (index >= ENTRY_COUNT) return NULL;
@@ -138,16 +140,16 @@ static enf_status read_setting(const char *setting, const entry *world, enf_gen_
                            error);
     if (key_is(setting, "translate"))
         return read_vector(setting, value, "translate=X,Y,Z, at most 1e12", options->translate, error);
-    if (world->sized && key_is(setting, "floors"))
+    if (world->size_max > 0 && key_is(setting, "floors"))
         return read_count(setting, value, FLOORS_MAX, &options->floors, error);
-    if (world->sized && key_is(setting, "rooms"))
+    if (world->size_max > 0 && key_is(setting, "rooms"))
         return read_count(setting, value, ROOMS_MAX, &options->rooms, error);
-    if (world->sized && key_is(setting, "detail"))
+    if (world->size_max > 0 && key_is(setting, "detail"))
         return read_count(setting, value, DETAIL_MAX, &options->detail, error);
     return enf_fail(
         error, ENF_BAD_USAGE,
         "gen: '%.100s' is not a setting of %s; it takes %sscale=, noise=, seed=, rotate=, translate=",
-        setting, world->name, world->sized ? "floors=, rooms=, detail=, " : "");
+        setting, world->name, world->size_max > 0 ? "floors=, rooms=, detail=, " : "");
 }
 
 // The length of the key, for finding the same key twice.
@@ -168,11 +170,11 @@ static enf_status read_settings(const char *const *settings, size_t count, const
     }
     double size =
         (double)options->floors * (double)options->rooms * (double)options->detail * (double)options->detail;
-    if (size > office_size_max)
+    if (world->size_max > 0 && size > world->size_max)
         return enf_fail(
             error, ENF_BAD_USAGE,
             "gen: floors * rooms * detail^2 is %.0f, at most %.0f is possible; choose smaller numbers", size,
-            office_size_max);
+            world->size_max);
     return ENF_OK;
 }
 

@@ -13,13 +13,15 @@
 ///
 /// `settings` are "key=value" texts, each key at most once:
 ///   scale=S | scale=SX,SY,SZ   default 1; not 0; a mirroring scale turns the triangles over
-///   noise=A                    default 0; moves every distinct vertex by a pseudo-random vector of length <=
-///   A seed=N                     default 1; picks the noise rotate=AX,AY,AZ            degrees about x, then
-///   y, then z translate=X,Y,Z
-/// applied in this order (so A is in world units); spawns are transformed, without the noise. World `office`
-/// also takes
-///   floors=F (default 2), rooms=R (per floor, default 6), detail=N (each rectangle becomes N x N, default
-///   1).
+///   noise=A                    default 0; moves every distinct vertex by a pseudo-random vector that is at
+///                              most A long
+///   seed=N                     default 1; picks the noise, and the shape of `caverns`
+///   rotate=AX,AY,AZ            degrees about x, then y, then z
+///   translate=X,Y,Z
+/// applied in this order (so A is in world units); spawns are transformed, without the noise. Worlds `office`
+/// and `caverns` also take
+///   floors=F (default 2), rooms=R (per floor, default 6), detail=N (each rectangle becomes N x N; the rock
+///   of caverns is as much finer; default 1).
 ///
 /// ENF_BAD_USAGE for an unknown name or key or a bad value, with words naming what is allowed;
 /// ENF_NO_RESOURCES when memory runs out or `out` can't be written.

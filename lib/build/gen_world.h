@@ -90,6 +90,7 @@ void enf_gen_four_rooms(enf_gen_world *world, const enf_gen_options *options);
 void enf_gen_four_rooms_tessellated(enf_gen_world *world, const enf_gen_options *options);
 void enf_gen_four_rooms_distorted(enf_gen_world *world, const enf_gen_options *options);
 void enf_gen_cavern(enf_gen_world *world, const enf_gen_options *options);
+void enf_gen_caverns(enf_gen_world *world, const enf_gen_options *options);
 void enf_gen_furnished(enf_gen_world *world, const enf_gen_options *options);
 void enf_gen_office(enf_gen_world *world, const enf_gen_options *options);
 void enf_gen_post_world(enf_gen_world *world, const enf_gen_options *options);

@@ -234,6 +234,14 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
 // ---------------------------------------------------------------------------------------------- the
 // predicate
 
+/// enf_points_orient, counted.
+static int orient(enf_geometry *geometry, const double *p, const double *q, const double *r,
+                  const double *x) {
+    int side = enf_points_orient_quickly(p, q, r, x);
+    geometry->decided[side == ENF_UNSURE ? ENF_TIER_EXACT : ENF_TIER_FILTER]++;
+    return side == ENF_UNSURE ? enf_points_orient_exactly(p, q, r, x) : side;
+}
+
 /// Where rounding may hide the side.
 static int decide_point(enf_geometry *geometry, const double *x, int32_t plane,
                         const enf_plane_filter *filter, double value, double magnitude) {
@@ -245,12 +253,11 @@ static int decide_point(enf_geometry *geometry, const double *x, int32_t plane,
         geometry->decided[ENF_TIER_FILTER]++;
         return value > 0 ? 1 : value < 0 ? -1 : 0;
     }
-    geometry->decided[ENF_TIER_EXACT]++;
     double third[3];
-    if (defined[2] >= 0) return enf_points_orient(p, q, geometry->points + 3 * (size_t)defined[2], x);
+    if (defined[2] >= 0) return orient(geometry, p, q, geometry->points + 3 * (size_t)defined[2], x);
     int axis = axis_of(defined[2]), step = p[axis] > 0 ? -1 : 1; // one step beyond 2^53 is no double
     for (int i = 0; i < 3; i++) third[i] = i == axis ? p[i] + step : p[i];
-    return step * enf_points_orient(p, q, third, x);
+    return step * orient(geometry, p, q, third, x);
 }
 
 static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane,
@@ -407,9 +414,8 @@ int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane) {
     if (!stored && vertex < geometry->point_count && defined[2] >= 0) { // cheaper than making a filter
         if (vertex == defined[0] || vertex == defined[1] || vertex == defined[2]) return 0;
         const double *at = geometry->points;
-        geometry->decided[ENF_TIER_FILTER]++;
-        return enf_points_orient(at + 3 * (size_t)defined[0], at + 3 * (size_t)defined[1],
-                                 at + 3 * (size_t)defined[2], at + 3 * (size_t)vertex);
+        return orient(geometry, at + 3 * (size_t)defined[0], at + 3 * (size_t)defined[1],
+                      at + 3 * (size_t)defined[2], at + 3 * (size_t)vertex);
     }
     enf_plane_filter room;
     return enf_geometry_side_by(geometry, vertex, plane, enf_geometry_filter(geometry, plane, &room));

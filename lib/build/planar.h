@@ -4,7 +4,7 @@
 #ifndef ENF_BUILD_PLANAR_H
 #define ENF_BUILD_PLANAR_H
 
-#include "base/wide.h"
+#include "base/limbs.h"
 
 #include <math.h>
 #include <stdbool.h>

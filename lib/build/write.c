@@ -502,7 +502,8 @@ static enf_status fill_image(enf_image *image, const enf_build *build, const cha
     if (!status) status = make_cells(image, build, error);
     if (!status) status = make_portals(image, build, error);
     if (!status) status = make_cell_portals(image, error);
-    if (!status) status = enf_image_locate(image, error);
+    if (!status) status = enf_image_neighbours(image, error);
+    if (!status) status = enf_image_boxes(image, error);
     if (!status) status = enf_image_draw(image, build, strings, error);
     return status;
 }

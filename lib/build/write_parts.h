@@ -18,8 +18,11 @@ typedef struct enf_image_strings {
 } enf_image_strings;
 bool enf_image_add_string(enf_image_strings *strings, const char *text, uint32_t *offset);
 
-/// Neighbours of tetrahedra, and the boxes around them. Needs points, tetrahedra and the frame.
-enf_status enf_image_locate(enf_image *image, enf_error *error);
+/// Which tetrahedron lies behind each face. Needs points and tetrahedra.
+enf_status enf_image_neighbours(enf_image *image, enf_error *error);
+
+/// The hierarchy of boxes around the tetrahedra. Needs points, tetrahedra and the frame.
+enf_status enf_image_boxes(enf_image *image, enf_error *error);
 
 /// Render points, triangles, groups, materials, and what each cell sees. Needs everything else.
 enf_status enf_image_draw(enf_image *image, const enf_build *build, enf_image_strings *strings,

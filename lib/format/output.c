@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Write without a name, sync, link, rename.
+// Write without a name, sync, link, rename. Large outputs go to the disk piece by piece while they are
+// written.
 #ifndef _GNU_SOURCE
-#define _GNU_SOURCE // O_TMPFILE
+#define _GNU_SOURCE // O_TMPFILE, sync_file_range
 #endif
 #include "format/output.h"
 
@@ -13,7 +14,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { NAME_TRIES_MAX = 1000 };
+enum { NAME_TRIES_MAX = 1000, PIECE = 8 << 20 };
+
+static const int64_t cached_most = 64 << 20; ///< bytes at a file's end that stay in the cache
 
 static enf_status cannot_write(enf_error *error, const char *path, int reason) {
     return enf_fail(
@@ -125,6 +128,44 @@ void enf_output_discard(enf_output *output) {
     *output = (enf_output){0};
 }
 
+#ifdef SYNC_FILE_RANGE_WRITE
+/// The disk has failed, or takes no such orders. Only the first counts; the file's sync may not tell it
+/// again.
+static void order(enf_output *output, int64_t from, int64_t to, unsigned flags) {
+    if (sync_file_range(fileno(output->file), from, to - from, flags) == 0 || output->failure) return;
+    if (errno == EIO || errno == ENOSPC || errno == EDQUOT) output->failure = errno;
+}
+
+/// Sends the last piece to the disk, and waits for what lies far behind to be there.
+static void send_piece(enf_output *output) {
+    if (output->direct || output->written - output->started < PIECE) return;
+    order(output, output->started, output->written, SYNC_FILE_RANGE_WRITE);
+    output->started = output->written;
+    int64_t end = (output->written - cached_most) / PIECE * PIECE;
+    if (end <= output->dropped) return;
+    order(output, output->dropped, end,
+          SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+    posix_fadvise(fileno(output->file), output->dropped, end - output->dropped, POSIX_FADV_DONTNEED);
+    output->dropped = end;
+}
+#else
+static void send_piece(enf_output *output) {
+    (void)output; // the sync will send it all
+}
+#endif
+
+void enf_output_write(enf_output *output, const void *bytes, uint64_t size) {
+    const char *at = bytes;
+    while (size > 0 && !ferror(output->file)) {
+        size_t piece = size < PIECE ? (size_t)size : PIECE;
+        fwrite(at, 1, piece, output->file);
+        at += piece;
+        size -= piece;
+        output->written += (int64_t)piece;
+        send_piece(output);
+    }
+}
+
 static void sync_folder(const char *folder) {
     int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (file < 0) return;
@@ -153,7 +194,9 @@ static int find_reason(FILE *file) {
 enf_status enf_output_commit(enf_output *output, enf_error *error) {
     enf_status status = ENF_OK;
     errno = 0;
-    if (fflush(output->file) != 0 || ferror(output->file) || (!output->direct && !publish(output)))
+    if (output->failure)
+        status = cannot_write(error, output->path, output->failure);
+    else if (fflush(output->file) != 0 || ferror(output->file) || (!output->direct && !publish(output)))
         status = cannot_write(error, output->path, find_reason(output->file));
     enf_output_discard(output);
     return status;

@@ -14,6 +14,10 @@ typedef struct enf_output {
     char *folder;
     char *temporary; ///< null: the file has no name yet
     bool direct;     ///< standard output, a device or a pipe: bytes go there at once
+
+    // Of enf_output_write: bytes written, of these on their way to the disk, and no longer in the cache.
+    int64_t written, started, dropped;
+    int failure; ///< errno of the disk, or 0
 } enf_output;
 
 /// Begins writing to `path`, "-" for standard output. What is at `path` stays until the commit. The bytes go
@@ -21,6 +25,11 @@ typedef struct enf_output {
 /// such thing), so that a killed program leaves nothing that looks like a result. ENF_NO_RESOURCES if the
 /// folder doesn't allow it.
 enf_status enf_output_open(enf_output *output, const char *path, enf_error *error);
+
+/// Writes many bytes to an output that takes no others but through this call. What is large goes to the disk
+/// while it is being written, and leaves the cache: the sync has little left to wait for, and a file of
+/// gigabytes does not fill the memory. A failure waits for the commit.
+void enf_output_write(enf_output *output, const void *bytes, uint64_t size);
 
 /// Flushes, syncs and gives the file its name. On failure nothing is left behind. The output is closed then.
 enf_status enf_output_commit(enf_output *output, enf_error *error);

@@ -55,21 +55,16 @@ static void plan(layout *out, const enf_file_view *view) {
     header->header_checksum = enf_hash64(header, offsetof(enf_file_header, header_checksum), 0);
 }
 
-/// A failure stays in the stream until the commit looks at it.
-static void put(FILE *file, const void *bytes, uint64_t size) {
-    if (size > 0) fwrite(bytes, 1, (size_t)size, file);
-}
-
-static void put_layout(FILE *file, const layout *plan) {
+static void put_layout(enf_output *output, const layout *plan) {
     static const char zeros[ENF_FILE_ALIGNMENT] = {0};
     uint64_t table_size = plan->header.section_count * sizeof *plan->sections;
     uint64_t end = plan->header.table_offset + table_size;
-    put(file, &plan->header, sizeof plan->header);
-    put(file, plan->sections, table_size);
-    for (uint32_t i = 0; i < plan->header.section_count && !ferror(file); i++) {
+    enf_output_write(output, &plan->header, sizeof plan->header);
+    enf_output_write(output, plan->sections, table_size);
+    for (uint32_t i = 0; i < plan->header.section_count; i++) {
         const enf_file_section *section = &plan->sections[i];
-        put(file, zeros, section->offset - end);
-        put(file, plan->arrays[i], section->size);
+        enf_output_write(output, zeros, section->offset - end);
+        enf_output_write(output, plan->arrays[i], section->size);
         end = section->offset + section->size;
     }
 }
@@ -81,7 +76,7 @@ enf_status enf_view_save(const enf_file_view *view, const char *path, enf_error 
     enf_output output;
     enf_status status = enf_output_open(&output, path, error);
     if (!status) {
-        put_layout(output.file, out);
+        put_layout(&output, out);
         status = enf_output_commit(&output, error);
     }
     free(out);

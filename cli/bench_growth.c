@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How time and memory grow with the world, and what a second thread gains. Every run is a process of its own;
+// runs with one thread and with several take turns, so that a busy machine disturbs both alike.
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE // asprintf
+#endif
+#include "base/timer.h"
+#include "build/write.h"
+#include "cli/bench.h"
+#include "cli/bench_child.h"
+#include "cli/bench_world.h"
+#include "cli/cli.h"
+#include "cli/job.h"
+
+#include <fnmatch.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { CHILD_SECONDS = 7200, SETTINGS = 3 };
+
+/// The bars.
+static const double exponent_most = 1.1, million = 1e6, million_seconds = 60, gain_least = 1.6;
+static const double near_million = 0.95; ///< so much of a million polygons counts as one
+
+/// The worlds, family by family, by size.
+static const struct world {
+    const char *family, *settings[SETTINGS];
+    double polygons; ///< about
+} worlds[] = {
+    {"office", {"floors=1", "rooms=7", "detail=3"}, 1e4},
+    {"office", {"floors=1", "rooms=20", "detail=3"}, 3e4},
+    {"office", {"floors=2", "rooms=35", "detail=3"}, 1e5},
+    {"office", {"floors=4", "rooms=54", "detail=3"}, 3e5},
+    {"office", {"floors=9", "rooms=80", "detail=3"}, 1e6},
+    {"caverns", {"floors=1", "rooms=3", "detail=2"}, 1e4},
+    {"caverns", {"floors=1", "rooms=9", "detail=2"}, 3e4},
+    {"caverns", {"floors=2", "rooms=14", "detail=2"}, 1e5},
+    {"caverns", {"floors=3", "rooms=27", "detail=2"}, 3e5},
+    {"caverns", {"floors=5", "rooms=52", "detail=2"}, 1e6},
+};
+
+enum { WORLD_COUNT = sizeof worlds / sizeof *worlds };
+
+/// Columns of the table: counts, seconds of the processor and by the clock, and what is made of them.
+enum {
+    POLYGONS,
+    TETRAHEDRA,
+    FINE_CELLS,
+    CELLS,
+    READ,
+    STAGE,
+    WRITE = STAGE + ENF_STAGE_COUNT,
+    TOTAL,
+    PEAK,
+    EXACT,
+    CLOCK,
+    SPLIT_CLOCK,
+    MEASURED, ///< so many columns come from a run with one thread; the next from one with several
+    CLOCK_THREADS = MEASURED,
+    SPLIT_CLOCK_THREADS,
+    SPLIT_GAIN,
+    COLUMN_COUNT
+};
+
+static const struct column {
+    const char *name;
+    int digits; ///< after the point
+} columns[COLUMN_COUNT] = {
+    {"polygons", 0},    {"tetrahedra", 0}, {"fine_cells", 0},    {"cells", 0},     {"read_s", 3},
+    {"clean_s", 3},     {"delaunay_s", 3}, {"split_s", 3},       {"connect_s", 3}, {"colour_s", 3},
+    {"decimate_s", 3},  {"portals_s", 3},  {"write_s", 3},       {"total_s", 2},   {"peak_mb", 0},
+    {"exact_share", 5}, {"clock_s", 2},    {"split_clock_s", 3}, {"clock_N_s", 2}, {"split_clock_N_s", 3},
+    {"split_gain", 2},
+};
+
+/// What a child is told, and what it says.
+typedef struct run {
+    const char *world, *output;
+    int threads;
+    double column[MEASURED];
+    enf_error error;
+} run;
+
+typedef struct row {
+    const struct world *world;
+    double column[COLUMN_COUNT];
+} row;
+
+typedef struct table {
+    int threads, runs;
+    double largest;
+    const char *pattern; ///< glob for families; null: all
+    run *shared;
+    row rows[WORLD_COUNT];
+    int count;
+} table;
+
+// ---------------------------------------------------------------------------------------------- one run
+
+static void take_columns(const cli_job *job, double *column) {
+    const enf_build *build = &job->build;
+    column[POLYGONS] = (double)build->soup.polygon_count;
+    column[TETRAHEDRA] = build->complex.tetrahedron_count;
+    column[FINE_CELLS] = build->complex.cell_count;
+    column[CELLS] = build->cell_count;
+    column[READ] = job->read.cpu_seconds;
+    column[WRITE] = job->write.cpu_seconds;
+    column[TOTAL] = column[READ] + column[WRITE];
+    for (int i = 0; i < ENF_STAGE_COUNT; i++) {
+        column[STAGE + i] = build->stages[i].cpu_seconds;
+        column[TOTAL] += column[STAGE + i];
+    }
+    column[CLOCK] = job->seconds + job->write.seconds;
+    column[SPLIT_CLOCK] = build->stages[ENF_STAGE_SPLIT].seconds;
+    column[PEAK] = (double)job->write.peak_bytes / 1e6;
+    column[EXACT] = enf_complex_tier_share(&build->complex, ENF_TIER_EXACT);
+}
+
+/// In the child: what `enfilade compile` does.
+static void compile_world(void *shared) {
+    run *run = shared;
+    cli_settings settings = cli_settings_default();
+    settings.threads = run->threads;
+    cli_job job = {0};
+    cli_texts inputs = {0};
+    enf_status status = cli_texts_add(&inputs, run->world) ? ENF_OK : enf_fail_memory(&run->error, "a list");
+    if (!status) status = cli_job_prepare(&job, &settings, &run->error);
+    if (!status) status = cli_job_run(&job, &inputs, NULL, &run->error);
+    double started = enf_timer_now(), cpu_started = enf_timer_cpu();
+    if (!status) status = enf_build_write(&job.build, job.options_json, run->output, &run->error);
+    cli_stage_end(&job.write, started, cpu_started);
+    if (!status) take_columns(&job, run->column);
+    cli_job_free(&job);
+    free(inputs.items);
+    cli_settings_free(&settings);
+}
+
+static enf_status run_child(run *run, const char *world, const char *output, int threads, enf_error *error) {
+    cli_child child;
+    memset(run, 0, sizeof *run);
+    run->world = world;
+    run->output = output;
+    run->threads = threads;
+    enf_status status = cli_child_run(compile_world, run, CHILD_SECONDS, 0, &child, error);
+    unlink(output);
+    if (status) return status;
+    if (child.signal) return enf_fail(error, ENF_NO_RESOURCES, "killed by signal %d", child.signal);
+    if (run->error.status) *error = run->error;
+    return run->error.status;
+}
+
+// ---------------------------------------------------------------------------------------------- one world
+
+static void take_least(double *least, const double *values, int count) {
+    for (int i = 0; i < count; i++) least[i] = fmin(least[i], values[i]);
+}
+
+/// The runs of one world, with one thread and with several. Whatever disturbs a run makes it longer, so the
+/// least of each column counts.
+static enf_status measure_files(const table *table, const char *world, const char *output, row *row,
+                                enf_error *error) {
+    const double *column = table->shared->column;
+    enf_status status = ENF_OK;
+    for (int c = 0; c < COLUMN_COUNT; c++) row->column[c] = INFINITY;
+    for (int i = 0; i < table->runs && !status; i++) {
+        status = run_child(table->shared, world, output, 1, error);
+        take_least(row->column, column, MEASURED);
+        if (!status && table->threads > 1)
+            status = run_child(table->shared, world, output, table->threads, error);
+        take_least(&row->column[CLOCK_THREADS], &column[CLOCK], 2);
+    }
+    row->column[SPLIT_GAIN] = row->column[SPLIT_CLOCK] / row->column[SPLIT_CLOCK_THREADS];
+    return status;
+}
+
+static enf_status measure_world(const table *table, row *row, enf_error *error) {
+    char *world = NULL, *output = NULL;
+    enf_status status = cli_world_make(row->world->family, row->world->settings, SETTINGS, &world, error);
+    if (!status && asprintf(&output, "%s.enf", world) < 0) {
+        output = NULL;
+        status = enf_fail_memory(error, "a path");
+    }
+    if (!status) status = measure_files(table, world, output, row, error);
+    cli_world_remove(world);
+    free(output);
+    return status;
+}
+
+// ---------------------------------------------------------------------------------------------- printing
+
+static void print_head(void) {
+    fputs("world", stdout);
+    for (int i = 0; i < COLUMN_COUNT; i++) printf(",%s", columns[i].name);
+    putchar('\n');
+    fflush(stdout);
+}
+
+static void print_row(const row *row) {
+    fputs(row->world->family, stdout);
+    for (int i = 0; i < SETTINGS; i++) printf(" %s", row->world->settings[i]);
+    for (int i = 0; i < COLUMN_COUNT; i++) printf(",%.*f", columns[i].digits, row->column[i]);
+    putchar('\n');
+    fflush(stdout);
+}
+
+/// The slope of log time over log polygons, by least squares; NaN for fewer than two sizes.
+static double fit_exponent(const row *rows, int count) {
+    double x = 0, y = 0, xx = 0, xy = 0;
+    for (int i = 0; i < count; i++) {
+        double u = log(rows[i].column[POLYGONS]), v = log(rows[i].column[TOTAL]);
+        x += u, y += v, xx += u * u, xy += u * v;
+    }
+    return count < 2 ? NAN : (count * xy - x * y) / (count * xx - x * x);
+}
+
+static const char *verdict(bool met) {
+    return met ? "met" : "MISSED";
+}
+
+/// The rows of one family against the bars.
+static void judge_family(const table *table, const row *rows, int count) {
+    const row *last = &rows[count - 1];
+    const char *family = last->world->family;
+    double exponent = fit_exponent(rows, count);
+    if (count < 2)
+        printf("%s: one size alone has no exponent\n", family);
+    else
+        printf(
+            "%s: time grows like polygons to the power of %.3f (%d sizes, processor time of one thread); at "
+            "most %.1f: %s\n",
+            family, exponent, count, exponent_most, verdict(exponent <= exponent_most));
+    if (last->column[POLYGONS] >= near_million * million)
+        printf("%s: %.0f polygons take one core %.1f s (%.1f s by the clock); at most %.0f s: %s\n", family,
+               last->column[POLYGONS], last->column[TOTAL], last->column[CLOCK], million_seconds,
+               verdict(last->column[TOTAL] <= million_seconds));
+    if (table->threads == 1) return;
+    printf("%s: splitting the largest is %.2f times as fast with %d threads as with one; at least %.1f with "
+           "two: %s\n",
+           family, last->column[SPLIT_GAIN], table->threads, gain_least,
+           verdict(last->column[SPLIT_GAIN] >= gain_least));
+}
+
+static void judge(const table *table) {
+    putchar('\n');
+    for (int first = 0, end; first < table->count; first = end) {
+        const char *family = table->rows[first].world->family;
+        for (end = first; end < table->count && strcmp(table->rows[end].world->family, family) == 0;) end++;
+        judge_family(table, table->rows + first, end - first);
+    }
+}
+
+// ---------------------------------------------------------------------------------------------- the table
+
+static bool is_wanted(const table *table, const struct world *world) {
+    return world->polygons <= table->largest &&
+           (!table->pattern || fnmatch(table->pattern, world->family, 0) == 0);
+}
+
+static enf_status run_worlds(table *table, enf_error *error) {
+    table->shared = cli_shared_new(sizeof *table->shared);
+    if (!table->shared) return enf_fail_memory(error, "a row");
+    enf_status status = ENF_OK;
+    for (int i = 0; i < WORLD_COUNT && !status; i++) {
+        if (!is_wanted(table, &worlds[i])) continue;
+        row *row = &table->rows[table->count];
+        row->world = &worlds[i];
+        if (table->count == 0) print_head();
+        status = measure_world(table, row, error);
+        if (status) break;
+        print_row(row);
+        table->count++;
+    }
+    cli_shared_free(table->shared, sizeof *table->shared);
+    if (!status && table->count == 0)
+        return enf_fail(
+            error, ENF_BAD_USAGE,
+            "no world is left; --worlds is a glob for office and caverns, --largest 10000 or more");
+    return status;
+}
+
+int cli_bench_growth(int argc, char **argv) {
+    table table = {.threads = 2, .runs = 1, .largest = million};
+    cli_option options[] = {
+        {"--threads", 0, CLI_COUNT, &table.threads, "N",
+         "compare one thread with so many; default 2, 1 for none", NULL, false},
+        {"--runs", 0, CLI_COUNT, &table.runs, "N", "the least of so many runs; default 1", NULL, false},
+        {"--largest", 0, CLI_LENGTH, &table.largest, "N", "only worlds of about N polygons or fewer", NULL,
+         false},
+        {"--worlds", 0, CLI_TEXT, &table.pattern, "GLOB", "only these: office, caverns", NULL, false},
+        {0}};
+    const cli_syntax syntax = {
+        .command = "enfilade bench growth",
+        .usage = "[--threads N] [--runs N] [--largest N] [--worlds GLOB]",
+        .summary =
+            "Offices and caverns of about 10^4, 3*10^4, 10^5, 3*10^5 and 10^6 polygons, read, compiled and\n"
+            "written, on one thread and (columns with _N) on several. Stages and total_s are processor "
+            "seconds\n"
+            "of one thread, clock_s and split_clock_s go by the clock; exact_share is of the predicates "
+            "that\n"
+            "the filter left to exact arithmetic. CSV; then, in words, how time grows with the polygons, "
+            "and\n"
+            "whether the bars are met.",
+        .options = options};
+    cli_texts operands = {0};
+    enf_error error = {0};
+    int status = cli_parse(&syntax, argc, argv, &operands);
+    if (status < 0) {
+        enf_status failed = run_worlds(&table, &error);
+        if (!failed) judge(&table);
+        status = failed ? cli_fail(&error) : ENF_OK;
+        if (cli_finish_output()) status = ENF_NO_RESOURCES;
+    }
+    free(operands.items);
+    return status;
+}
