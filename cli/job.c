@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-const char *const cli_tetrahedralizers[] = {"cgal", "tetgen", NULL};
+const char *const cli_tetrahedralizers[] = {"own", "cgal", "tetgen", NULL};
 const char *const cli_heuristics[] = {"aspect", "aspect-scaled", NULL};
 _Static_assert(sizeof cli_heuristics / sizeof *cli_heuristics == ENF_HEURISTIC_COUNT + 1,
                "one name per heuristic");
@@ -97,9 +97,9 @@ enf_status cli_job_prepare(cli_job *job, const cli_settings *settings, enf_error
         return enf_fail(error, ENF_BAD_USAGE, "--pvs %s: visibility is not built yet; leave --pvs out",
                         cli_pvs_methods[settings->pvs]);
     if (options->tetrahedralizer == ENF_TETRAHEDRALIZER_TETGEN && !enf_shim_has_tetgen())
-        return enf_fail(
-            error, ENF_BAD_USAGE,
-            "--tetrahedralizer tetgen: this build has no TetGen; use cgal, or build with ENFILADE_TETGEN=ON");
+        return enf_fail(error, ENF_BAD_USAGE,
+                        "--tetrahedralizer tetgen: this build has no TetGen; use own or cgal, or build with "
+                        "ENFILADE_TETGEN=ON");
     enf_status status = enf_stop_parse(settings->stop, &options->stop, error);
     if (status) return status;
     job->options_json = print_options(settings);

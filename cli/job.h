@@ -26,7 +26,9 @@ extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const
 
 /// Rows of an option table that fill the cli_settings `s`.
 #define CLI_SETTINGS_OPTIONS(s)                                                                                \
-    {"--tetrahedralizer",  0,    CLI_CHOICE, &(s).tetrahedralizer, "cgal|tetgen", "default cgal",              \
+    {"--tetrahedralizer",  0,                                                                                  \
+     CLI_CHOICE,           &(s).tetrahedralizer,                                                               \
+     "own|cgal|tetgen",    "default own; cgal makes the same",                                                 \
      cli_tetrahedralizers, false},                                                                             \
         {"--heuristic",  0,    CLI_CHOICE, &(s).heuristic, "NAME", "aspect (default) or aspect-scaled",        \
          cli_heuristics, false},                                                                               \

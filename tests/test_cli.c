@@ -226,7 +226,7 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"compile box.obj -o out.enf -o b.enf", "given twice"},
         {"compile box.obj -o out.enf --verbose=1", "takes no value"},
         {"compile box.obj -o out.enf -v -q", "contradict"},
-        {"compile box.obj -o out.enf --tetrahedralizer qhull", "choose one of cgal, tetgen"},
+        {"compile box.obj -o out.enf --tetrahedralizer qhull", "choose one of own, cgal, tetgen"},
         {"compile box.obj -o out.enf --heuristic best", "choose one of aspect"},
         {"compile box.obj -o out.enf --stop never", "unknown stop rule 'never'"},
         {"compile box.obj -o out.enf --stop cells=0", "cells"},

@@ -47,7 +47,7 @@ static void check_level(const char *path, const char *name) {
         memset(&builds[i], 0, sizeof builds[i]);
         if (enf_soup_read(&builds[i].soup, path, &error) != ENF_OK) fail_msg("%s", error.text);
         enf_build_options options = pipeline_options();
-        options.tetrahedralizer = i == 0 ? ENF_TETRAHEDRALIZER_CGAL : ENF_TETRAHEDRALIZER_TETGEN;
+        options.tetrahedralizer = i == 0 ? ENF_TETRAHEDRALIZER_OWN : ENF_TETRAHEDRALIZER_TETGEN;
         if (enf_build_run(&builds[i], &options, &error) != ENF_OK) fail_msg("%s: %s", name, error.text);
     }
     check_leak(&builds[0], name);

@@ -37,6 +37,6 @@ void enf_arrangement_free(enf_arrangement *arrangement);
 
 /// Planes for clean polygons over tetrahedra (taken over).
 enf_status enf_arrangement_make(enf_arrangement *arrangement, const enf_mesh *mesh, enf_tet_mesh tets,
-                                enf_error *error);
+                                int threads, enf_error *error);
 
 #endif

@@ -86,10 +86,15 @@ static enf_status tetrahedralize(kitchen *k) {
     k->build->peak_bytes_least = k->build->peak_bytes_predicted = enf_memory_estimate(counts);
     enf_status status = enf_memory_admit(counts, k->options->memory, k->error);
     if (status != ENF_OK) return status;
+    static const struct {
+        const char *name;
+        enf_status (*run)(const double *points, size_t point_count, enf_tetrahedra *out, enf_error *error);
+    } tetrahedralizers[] = {[ENF_TETRAHEDRALIZER_OWN] = {"own code", enf_delaunay},
+                            [ENF_TETRAHEDRALIZER_CGAL] = {"CGAL", enf_shim_delaunay_cgal},
+                            [ENF_TETRAHEDRALIZER_TETGEN] = {"TetGen", enf_shim_delaunay_tetgen}};
     enf_tetrahedra made = {0};
-    bool tetgen = k->options->tetrahedralizer == ENF_TETRAHEDRALIZER_TETGEN;
-    status = tetgen ? enf_shim_delaunay_tetgen(mesh->points, mesh->point_count, &made, k->error)
-                    : enf_delaunay(mesh->points, mesh->point_count, &made, k->error);
+    int chosen = (int)k->options->tetrahedralizer;
+    status = tetrahedralizers[chosen].run(mesh->points, mesh->point_count, &made, k->error);
     if (status != ENF_OK) return status;
     if (!enf_tetrahedra_sort(&made.corners, made.count, mesh->points, mesh->point_count)) {
         free(made.corners);
@@ -97,7 +102,7 @@ static enf_status tetrahedralize(kitchen *k) {
     }
     status = enf_tet_mesh_pair(&k->tets, made.corners, made.count, (int32_t)mesh->point_count, k->error);
     if (status != ENF_OK) return status;
-    say(k, "%d tetrahedra%s", (int)k->tets.count, tetgen ? " by TetGen" : "");
+    say(k, "%d tetrahedra by %s", (int)k->tets.count, tetrahedralizers[chosen].name);
     enf_memory_count_tetrahedra(counts, mesh, &k->tets);
     k->build->peak_bytes_predicted = enf_memory_estimate(counts);
     return enf_memory_admit(counts, k->options->memory, k->error);
@@ -106,7 +111,8 @@ static enf_status tetrahedralize(kitchen *k) {
 static enf_status split(kitchen *k) {
     enf_complex *complex = &k->build->complex;
     k->share = 0.5;
-    enf_status status = enf_arrangement_make(&k->arrangement, &k->build->mesh, k->tets, k->error);
+    enf_status status =
+        enf_arrangement_make(&k->arrangement, &k->build->mesh, k->tets, k->crew.threads, k->error);
     memset(&k->tets, 0, sizeof k->tets); // taken, or freed
     if (status != ENF_OK) return status;
     k->begun = k->share = 0.5;

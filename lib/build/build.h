@@ -8,7 +8,13 @@
 #include "build/portal.h"
 #include "build/region.h"
 
-typedef enum enf_tetrahedralizer { ENF_TETRAHEDRALIZER_CGAL, ENF_TETRAHEDRALIZER_TETGEN } enf_tetrahedralizer;
+/// Who triangulates: our own code (delaunay.h), CGAL, which makes the very same tetrahedra, or TetGen, which
+/// may break ties of cospherical points another way.
+typedef enum enf_tetrahedralizer {
+    ENF_TETRAHEDRALIZER_OWN,
+    ENF_TETRAHEDRALIZER_CGAL,
+    ENF_TETRAHEDRALIZER_TETGEN
+} enf_tetrahedralizer;
 
 /// The stages of the recipe, in order.
 typedef enum enf_stage {

@@ -10,7 +10,7 @@
 
 /// A part has at least this much to do, if the world has; a unit is about a facet. Smaller parts cost more to
 /// begin and to put together than a second thread saves.
-enum { PART_WORK = 1 << 16 };
+enum { PART_WORK = 1 << 15 };
 
 /// While the parts are made.
 typedef struct divider {
