@@ -9,7 +9,7 @@
 
 /// Only the time depends on these two: from how many sides on a cell is plugged, and how many a plug has at
 /// most.
-enum { PLUGGED_SIDES = 64, PLUG_SIDES = 24 };
+enum { PLUGGED_SIDES = 256, PLUG_SIDES = 24 };
 
 void enf_portal_heap_free(enf_portal_heap *portals) {
     enf_surface_free(&portals->surface);
@@ -134,6 +134,7 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
     for (int i = 0; i < 2; ++i) {
         int s = i ? !first : first;
         if (known[s]) continue;
+        if (enf_surface_box_silhouette(&portals->surface, portal->cell[s], normal) <= largest) continue;
         if (!plug_dents(portals, portal->cell[s], normal)) return false;
         double area = enf_surface_silhouette(&portals->surface, portal->cell[s], normal, largest);
         if (area < 0) return false;

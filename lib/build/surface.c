@@ -3,7 +3,6 @@
 #include "build/surface.h"
 
 #include "base/array.h"
-#include "build/pair_table.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,18 +11,17 @@
 void enf_surface_free(enf_surface *surface) {
     free(surface->piece_cell);
     free(surface->piece_open);
-    free(surface->piece_edge);
-    free(surface->piece_edges);
     free(surface->pieces);
-    free(surface->edges);
+    free(surface->corners);
     free(surface->vertices);
     free(surface->bodies);
-    free(surface->edge_sum);
-    free(surface->touched);
+    free(surface->moments);
+    free(surface->moments_free);
     free(surface->facing);
     free(surface->piece_hidden);
     free(surface->hidden);
     free(surface->plugs);
+    enf_contour_free(&surface->contour);
     enf_silhouette_free(&surface->silhouette);
     *surface = (enf_surface){0};
 }
@@ -44,17 +42,18 @@ typedef struct sorted_pieces {
     int64_t corner_count;
 } sorted_pieces;
 
-static const double *corner_of(const enf_graph *graph, const sorted_piece *sorted, int32_t i) {
+/// The vertex of the graph at a corner.
+static int32_t corner_of(const enf_graph *graph, const sorted_piece *sorted, int32_t i) {
     int64_t begin = graph->piece_corner[sorted->piece], end = graph->piece_corner[sorted->piece + 1];
     int64_t count = end - begin,
             at = sorted->turned ? sorted->start - (int64_t)i : sorted->start + (int64_t)i;
     if (at < 0) at += count;
-    return graph->vertices[graph->corners[begin + (at < count ? at : at - count)]];
+    return graph->corners[begin + (at < count ? at : at - count)];
 }
 
-/// The same in graph units.
+/// Its place in graph units.
 static void take_corner(const enf_graph *graph, const sorted_piece *sorted, int32_t i, double corner[3]) {
-    const double *at = corner_of(graph, sorted, i);
+    const double *at = graph->vertices[corner_of(graph, sorted, i)];
     for (int k = 0; k < 3; ++k) corner[k] = at[k] * graph->scale;
 }
 
@@ -75,7 +74,8 @@ static bool comes_before(const enf_graph *graph, const sorted_piece *a, const so
     if (open_a != open_b) return open_a;
     int32_t count_a = corner_count_of(graph, a->piece), count_b = corner_count_of(graph, b->piece);
     for (int32_t i = 0; i < count_a && i < count_b; ++i) {
-        int order = compare_points(corner_of(graph, a, i), corner_of(graph, b, i));
+        int order =
+            compare_points(graph->vertices[corner_of(graph, a, i)], graph->vertices[corner_of(graph, b, i)]);
         if (order) return order < 0;
     }
     return count_a < count_b;
@@ -172,18 +172,21 @@ static bool allocate(enf_surface *surface, size_t pieces, size_t corners, size_t
     surface->piece_cell = enf_array_new(pieces, sizeof *surface->piece_cell);
     surface->piece_open = enf_array_new(pieces, sizeof *surface->piece_open);
     surface->piece_hidden = enf_array_zeroed(pieces, sizeof *surface->piece_hidden);
-    surface->piece_edge = enf_array_zeroed(pieces + 1, sizeof *surface->piece_edge);
-    surface->piece_edges = enf_array_new(corners, sizeof *surface->piece_edges);
     surface->pieces = enf_array_new(pieces, sizeof *surface->pieces);
+    surface->corners = enf_array_new(corners, sizeof *surface->corners);
     surface->bodies = enf_array_new(cells, sizeof *surface->bodies);
-    return surface->piece_cell && surface->piece_open && surface->piece_hidden && surface->piece_edge &&
-           surface->piece_edges && surface->pieces && surface->bodies;
+    // A body with moments has two fine cells or more.
+    surface->moments = enf_array_new(cells / 2, sizeof *surface->moments);
+    surface->moments_free = enf_array_new(cells / 2, sizeof *surface->moments_free);
+    return surface->piece_cell && surface->piece_open && surface->piece_hidden && surface->pieces &&
+           surface->corners && surface->bodies && surface->moments && surface->moments_free;
 }
 
 /// Vertices by their coordinates: open addressing, at most half full, -1 is free.
 typedef struct vertex_table {
     int32_t *slots;
     size_t mask;
+    int32_t *number_of; ///< for each vertex of the graph its number here, or -1: not looked up yet
 } vertex_table;
 
 /// Where the point is, or would be.
@@ -208,18 +211,27 @@ static bool grow_table(const enf_surface *surface, vertex_table *table) {
     if (!grown) return false;
     for (size_t i = 0; i < slots; ++i) grown[i] = -1;
     free(table->slots);
-    *table = (vertex_table){grown, slots - 1};
+    table->slots = grown;
+    table->mask = slots - 1;
     for (int32_t v = 0; v < surface->vertex_count; ++v)
         table->slots[slot_of(surface, table, surface->vertices[v])] = v;
     return true;
 }
 
-/// Finds or adds a vertex. Negative without memory.
-static int32_t vertex_at(enf_surface *surface, vertex_table *table, const enf_graph *graph,
-                         const sorted_piece *sorted, int32_t corner) {
+static bool create_table(vertex_table *table, const enf_graph *graph) {
+    int32_t highest = -1;
+    for (int64_t i = 0; i < graph->piece_corner[graph->piece_count]; ++i)
+        if (graph->corners[i] > highest) highest = graph->corners[i];
+    *table = (vertex_table){.number_of = enf_array_new((size_t)highest + 1, sizeof *table->number_of)};
+    for (int32_t v = 0; table->number_of && v <= highest; ++v) table->number_of[v] = -1;
+    return table->number_of != NULL;
+}
+
+/// Finds or adds a vertex of the graph. Negative without memory.
+static int32_t find_vertex(enf_surface *surface, vertex_table *table, const enf_graph *graph,
+                           int32_t number) {
     double point[3];
-    take_corner(graph, sorted, corner, point);
-    for (int k = 0; k < 3; ++k) point[k] += 0.0; // -0 becomes 0
+    for (int k = 0; k < 3; ++k) point[k] = graph->vertices[number][k] * graph->scale + 0.0; // -0 becomes 0
     if (2 * (size_t)surface->vertex_count >= table->mask && !grow_table(surface, table)) return -1;
     size_t slot = slot_of(surface, table, point);
     if (table->slots[slot] >= 0) return table->slots[slot];
@@ -229,19 +241,12 @@ static int32_t vertex_at(enf_surface *surface, vertex_table *table, const enf_gr
     return table->slots[slot] = surface->vertex_count++;
 }
 
-/// Negative without memory.
-static int32_t edge_at(enf_surface *surface, enf_pair_table *table, int32_t from, int32_t to) {
-    int32_t *edge = NULL;
-    if (enf_pair_table_reserve(table, (size_t)surface->edge_count + 1) &&
-        enf_array_reserve(surface->edges, surface->edge_capacity, (size_t)surface->edge_count + 1))
-        edge = enf_pair_table_at(table, from, to);
-    if (!edge) return -1;
-    if (*edge < 0) {
-        *edge = surface->edge_count++;
-        surface->edges[*edge][0] = from < to ? from : to;
-        surface->edges[*edge][1] = from < to ? to : from;
-    }
-    return 2 * *edge + (from > to);
+/// The number here of a corner. Negative without memory.
+static int32_t vertex_at(enf_surface *surface, vertex_table *table, const enf_graph *graph,
+                         const sorted_piece *sorted, int32_t corner) {
+    int32_t vertex = corner_of(graph, sorted, corner), *number = &table->number_of[vertex];
+    if (*number < 0) *number = find_vertex(surface, table, graph, vertex);
+    return *number;
 }
 
 /// Area vector of the outline, from the cross products with its first corner.
@@ -285,45 +290,42 @@ static bool is_gone(const enf_surface_piece *piece) {
     return piece->area[0] != piece->area[0];
 }
 
-/// Appends the edges of one piece.
+/// Appends the outline of one piece; neighbouring corners with the same coordinates are one.
 static bool add_outline(enf_surface *surface, const enf_graph *graph, const sorted_piece *from,
-                        vertex_table *vertices, enf_pair_table *edges, int32_t *at) {
-    int32_t count = corner_count_of(graph, from->piece);
-    int32_t first = vertex_at(surface, vertices, graph, from, 0), last = first;
-    for (int32_t i = 1; i <= count; ++i) {
-        int32_t next = i < count ? vertex_at(surface, vertices, graph, from, i) : first;
-        if (last < 0 || next < 0) return false;
-        if (next == last) continue;
-        int32_t edge = edge_at(surface, edges, last, next);
-        if (edge < 0) return false;
-        surface->piece_edges[(*at)++] = edge;
-        last = next;
+                        vertex_table *vertices, enf_surface_piece *piece) {
+    int32_t *corners = surface->corners + piece->first_corner, count = 0;
+    for (int32_t i = 0; i < corner_count_of(graph, from->piece); ++i) {
+        int32_t vertex = vertex_at(surface, vertices, graph, from, i);
+        if (vertex < 0) return false;
+        if (count == 0 || corners[count - 1] != vertex) corners[count++] = vertex;
     }
+    while (count > 0 && corners[count - 1] == corners[0]) --count;
+    piece->corner_count = count;
     return true;
 }
 
 static bool fill_pieces(enf_surface *surface, const sorted_pieces *sorted) {
     const enf_graph *graph = sorted->graph;
-    vertex_table vertices = {0};
-    enf_pair_table edges;
-    bool good = enf_pair_table_create(&edges, 1024);
+    vertex_table vertices;
+    bool good = create_table(&vertices, graph);
     int32_t at = 0, piece = 0;
     for (int32_t cell = 0; cell < graph->cell_count; ++cell) {
         for (; good && piece < sorted->first[cell + 1]; ++piece) {
             const sorted_piece *from = &sorted->pieces[piece];
+            enf_surface_piece *filled = &surface->pieces[piece];
             surface->piece_cell[piece][0] = cell;
             surface->piece_cell[piece][1] = (int32_t)from->beyond;
             surface->piece_open[piece] = graph->piece_open[from->piece] && (int32_t)from->beyond >= 0;
-            measure_piece(graph, from, surface->pieces[piece].area);
-            good = add_outline(surface, graph, from, &vertices, &edges, &at);
-            surface->piece_edge[piece + 1] = at;
+            measure_piece(graph, from, filled->area);
+            filled->first_corner = at;
+            good = add_outline(surface, graph, from, &vertices, filled);
+            at += filled->corner_count;
         }
     }
     surface->piece_count = piece;
     free(vertices.slots);
-    enf_pair_table_free(&edges);
-    surface->edge_sum = enf_array_zeroed((size_t)surface->edge_count, sizeof *surface->edge_sum);
-    return good && surface->edge_sum;
+    free(vertices.number_of);
+    return good;
 }
 
 static int32_t *next_of(enf_surface *surface, int32_t side) {
@@ -344,28 +346,39 @@ static float round_down(double value) {
     return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
 }
 
+static float lower_of(float a, float b) {
+    return a < b ? a : b;
+}
+
+static float higher_of(float a, float b) {
+    return a > b ? a : b;
+}
+
+/// A corner of the piece, or null when it has none left.
+static const double *first_corner_of(const enf_surface *surface, int32_t piece) {
+    const enf_surface_piece *at = &surface->pieces[piece];
+    return at->corner_count > 0 ? surface->vertices[surface->corners[at->first_corner]] : NULL;
+}
+
 /// Adds a side to its fine cell's list, bounding box and (by the divergence theorem) volume.
 static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
     enf_body *body = &surface->bodies[cell];
-    int32_t piece = side / 2;
-    surface->pieces[piece].next[side & 1] = -1;
+    enf_surface_piece *piece = &surface->pieces[side / 2];
+    piece->next[side & 1] = -1;
     append_sides(surface, body, side, side);
     ++body->side_count;
-    const double *point = NULL, *origin = NULL;
-    for (int32_t i = surface->piece_edge[piece]; i < surface->piece_edge[piece + 1]; ++i)
-        for (int end = 0; end < 2; ++end) {
-            point = surface->vertices[surface->edges[surface->piece_edges[i] / 2][end]];
-            for (int k = 0; k < 3; ++k) {
-                body->low[k] = fminf(body->low[k], round_down(point[k]));
-                body->high[k] = fmaxf(body->high[k], -round_down(-point[k]));
-            }
+    for (int32_t i = 0; i < piece->corner_count; ++i) {
+        const double *point = surface->vertices[surface->corners[piece->first_corner + i]];
+        for (int k = 0; k < 3; ++k) {
+            body->low[k] = lower_of(body->low[k], round_down(point[k]));
+            body->high[k] = higher_of(body->high[k], -round_down(-point[k]));
         }
-    int32_t origin_edge = surface->piece_edge[body->first_side / 2];
-    if (origin_edge < surface->piece_edge[body->first_side / 2 + 1])
-        origin = surface->vertices[surface->edges[surface->piece_edges[origin_edge] / 2][0]];
+    }
+    const double *point = first_corner_of(surface, side / 2);
+    const double *origin = first_corner_of(surface, body->first_side / 2);
     if (!point || !origin) return;
     for (int k = 0; k < 3; ++k) {
-        double outward = surface->pieces[piece].area[k];
+        double outward = piece->area[k];
         body->volume += (point[k] - origin[k]) * (side & 1 ? -outward : outward) / 3;
     }
 }
@@ -376,6 +389,7 @@ static void fill_bodies(enf_surface *surface, int32_t cell_count) {
         surface->bodies[cell] = (enf_body){.first_side = -1,
                                            .last_side = -1,
                                            .fine_count = 1,
+                                           .moments = -1,
                                            .low = {INFINITY, INFINITY, INFINITY},
                                            .high = {-INFINITY, -INFINITY, -INFINITY}};
     for (int32_t piece = 0; piece < surface->piece_count; ++piece)
@@ -400,15 +414,58 @@ enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_
     return status;
 }
 
+/// The moments of a fine cell: cones from a corner over triangles of its sides.
+static enf_moments measure_fine(const enf_surface *surface, const enf_body *body) {
+    enf_moments sums = {0};
+    const double *origin = NULL, *corners[3];
+    for (int32_t side = body->first_side; side >= 0; side = surface->pieces[side / 2].next[side & 1]) {
+        const enf_surface_piece *piece = &surface->pieces[side / 2];
+        const int32_t *outline = surface->corners + piece->first_corner;
+        if (!origin) origin = first_corner_of(surface, side / 2);
+        for (int32_t i = 1; i + 1 < piece->corner_count; ++i) {
+            corners[0] = surface->vertices[outline[0]];
+            corners[1] = surface->vertices[outline[i]];
+            corners[2] = surface->vertices[outline[i + 1]];
+            enf_moments_add_cone(&sums, origin, corners, side & 1 ? -1 : 1);
+        }
+    }
+    if (origin) enf_moments_finish(&sums, origin);
+    return sums;
+}
+
+/// The moments of a body: where they are kept, or those of a fine cell in `fine`.
+static enf_moments *moments_of(enf_surface *surface, const enf_body *body, enf_moments *fine) {
+    if (body->moments >= 0) return &surface->moments[body->moments];
+    *fine = measure_fine(surface, body);
+    return fine;
+}
+
+/// Adds the moments of `other` to those of the body. They take a place that one of the two has, or a free
+/// one.
+static void merge_moments(enf_surface *surface, enf_body *body, enf_body *other) {
+    enf_moments fine[2], *moments = moments_of(surface, body, &fine[0]);
+    enf_moments_join(moments, moments_of(surface, other, &fine[1]));
+    if (body->moments >= 0 && other->moments >= 0)
+        surface->moments_free[surface->moments_free_count++] = other->moments;
+    else if (body->moments < 0 && other->moments >= 0)
+        body->moments = other->moments;
+    else if (body->moments < 0)
+        body->moments = surface->moments_free_count > 0 ? surface->moments_free[--surface->moments_free_count]
+                                                        : surface->moments_count++;
+    surface->moments[body->moments] = *moments;
+    other->moments = -1;
+}
+
 void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
     enf_body *body = &surface->bodies[kept], *other = &surface->bodies[gone];
+    merge_moments(surface, body, other);
     append_sides(surface, body, other->first_side, other->last_side);
     body->side_count += other->side_count;
     body->fine_count += other->fine_count;
     body->volume += other->volume;
     for (int k = 0; k < 3; ++k) {
-        body->low[k] = fminf(body->low[k], other->low[k]);
-        body->high[k] = fmaxf(body->high[k], other->high[k]);
+        body->low[k] = lower_of(body->low[k], other->low[k]);
+        body->high[k] = higher_of(body->high[k], other->high[k]);
     }
     other->first_side = other->last_side = -1;
     other->side_count = 0;
@@ -510,63 +567,74 @@ static void span_plane(const double direction[3], double u[3], double v[3]) {
         v[k] = direction[(k + 1) % 3] * u[(k + 2) % 3] - direction[(k + 2) % 3] * u[(k + 1) % 3];
 }
 
-/// Sums up how often the facing pieces run each edge.
-static bool sum_edges(enf_surface *surface, size_t facing_count, size_t *touched_count) {
-    size_t count = 0;
+/// Runs the outlines of the facing sides.
+static bool find_contour(enf_surface *surface, size_t facing_count) {
+    size_t corners = 0;
+    for (size_t i = 0; i < facing_count; ++i)
+        corners += (size_t)surface->pieces[surface->facing[i] / 2].corner_count;
+    if (!enf_contour_start(&surface->contour, corners)) return false;
     for (size_t i = 0; i < facing_count; ++i) {
-        int32_t side = surface->facing[i], piece = side / 2;
-        int32_t begin = surface->piece_edge[piece], end = surface->piece_edge[piece + 1];
-        if (!enf_array_reserve(surface->touched, surface->touched_capacity, count + (size_t)(end - begin))) {
-            for (size_t k = 0; k < count; ++k) surface->edge_sum[surface->touched[k]] = 0;
-            return false;
-        }
-        for (int32_t k = begin; k < end; ++k) {
-            int32_t edge = surface->piece_edges[k] / 2;
-            bool backwards = (surface->piece_edges[k] & 1) != (side & 1);
-            surface->edge_sum[edge] += backwards ? -1 : 1;
-            surface->touched[count++] = edge;
-        }
+        const enf_surface_piece *piece = &surface->pieces[surface->facing[i] / 2];
+        const int32_t *outline = surface->corners + piece->first_corner;
+        int32_t times = surface->facing[i] & 1 ? -1 : 1;
+        for (int32_t k = 0, last = piece->corner_count - 1; k < piece->corner_count; last = k++)
+            enf_contour_run(&surface->contour, outline[last], outline[k], times);
     }
-    *touched_count = count;
     return true;
 }
 
 /// Hands the edges that don't cancel to the sweep.
-static bool add_contour(enf_surface *surface, size_t touched_count, const double direction[3]) {
+static bool add_contour(enf_surface *surface, const double direction[3]) {
+    const enf_contour *contour = &surface->contour;
     double u[3], v[3];
     span_plane(direction, u, v);
     enf_silhouette_clear(&surface->silhouette);
-    bool fine = true;
-    for (size_t i = 0; i < touched_count; ++i) {
-        int32_t edge = surface->touched[i], times = surface->edge_sum[edge];
-        if (times == 0) continue;
-        surface->edge_sum[edge] = 0;
-        const double *a = surface->vertices[surface->edges[edge][0]],
-                     *b = surface->vertices[surface->edges[edge][1]];
+    for (size_t i = 0; i < contour->filled_count; ++i) {
+        const enf_contour_slot *edge = &contour->slots[contour->filled[i]];
+        if (edge->times == 0) continue;
+        const double *a = surface->vertices[edge->from], *b = surface->vertices[edge->to];
         double from[2] = {dot(a, u), dot(a, v)}, to[2] = {dot(b, u), dot(b, v)};
-        fine = fine && enf_silhouette_add(&surface->silhouette, from, to, times);
+        if (!enf_silhouette_add(&surface->silhouette, from, to, edge->times)) return false;
     }
-    return fine;
+    return true;
 }
 
 double enf_surface_silhouette(enf_surface *surface, int32_t cell, const double direction[3], double enough) {
     const enf_body *body = &surface->bodies[cell];
-    size_t facing_count, touched_count;
-    double bound;
+    size_t facing_count;
+    double bound, area = 0;
     if (!collect_all(surface, cell, direction, &facing_count, &bound)) return -1;
     if (bound <= enough || body->fine_count == 1) return bound;
-    double area = 0;
-    if (!sum_edges(surface, facing_count, &touched_count) ||
-        !add_contour(surface, touched_count, direction) || !enf_silhouette_area(&surface->silhouette, &area))
+    if (!find_contour(surface, facing_count) || !add_contour(surface, direction) ||
+        !enf_silhouette_area(&surface->silhouette, &area))
         return -1;
     return area > 0 ? area : 0;
 }
 
+/// What bounds give way by for rounding.
+#define BOUND_SLACK 0x1p-20
+
 double enf_surface_silhouette_bound(const enf_surface *surface, int32_t cell, const double direction[3]) {
     const enf_body *body = &surface->bodies[cell];
-    double extent = 0;
-    for (int k = 0; k < 3; ++k) extent += fabs(direction[k]) * ((double)body->high[k] - (double)body->low[k]);
-    return extent > 0 && body->volume > 0 ? body->volume / extent * (1 - 0x1p-20) : 0;
+    double longest = INFINITY;
+    for (int k = 0; k < 3; ++k) {
+        double way = ((double)body->high[k] - (double)body->low[k]) / fabs(direction[k]);
+        if (way < longest) longest = way; // NaN: nothing along a flat side
+    }
+    double bound = longest > 0 && longest < INFINITY && body->volume > 0
+                       ? body->volume / longest * (1 - BOUND_SLACK)
+                       : 0;
+    if (body->moments < 0) return bound;
+    double other = enf_moments_silhouette_bound(&surface->moments[body->moments], direction);
+    return other > bound ? other : bound;
+}
+
+double enf_surface_box_silhouette(const enf_surface *surface, int32_t cell, const double direction[3]) {
+    const enf_body *body = &surface->bodies[cell];
+    double size[3], area = 0;
+    for (int k = 0; k < 3; ++k) size[k] = (double)body->high[k] - (double)body->low[k];
+    for (int k = 0; k < 3; ++k) area += fabs(direction[k]) * size[(k + 1) % 3] * size[(k + 2) % 3];
+    return area * (1 + BOUND_SLACK);
 }
 
 bool enf_surface_is_lid(const enf_surface *surface, int32_t cell) {
