@@ -220,7 +220,8 @@ static bool grow_table(const enf_surface *surface, vertex_table *table) {
 
 static bool create_table(vertex_table *table, const enf_graph *graph) {
     int32_t highest = -1;
-    for (int64_t i = 0; i < graph->piece_corner[graph->piece_count]; ++i)
+    int64_t corners = graph->piece_count > 0 ? graph->piece_corner[graph->piece_count] : 0;
+    for (int64_t i = 0; i < corners; ++i)
         if (graph->corners[i] > highest) highest = graph->corners[i];
     *table = (vertex_table){.number_of = enf_array_new((size_t)highest + 1, sizeof *table->number_of)};
     for (int32_t v = 0; table->number_of && v <= highest; ++v) table->number_of[v] = -1;
@@ -346,12 +347,13 @@ static float round_down(double value) {
     return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
 }
 
+/// The lower of two; the first if the other is no number.
 static float lower_of(float a, float b) {
-    return a < b ? a : b;
+    return b < a ? b : a;
 }
 
 static float higher_of(float a, float b) {
-    return a > b ? a : b;
+    return b > a ? b : a;
 }
 
 /// A corner of the piece, or null when it has none left.
