@@ -20,7 +20,7 @@
 
 /// Only the time depends on these: edges in a block that is halved, how often, bands per square root of the
 /// edges, and edges that need no bands; moves of a sort by insertion before qsort takes over.
-enum { LARGE_BLOCK = 12, MOST_HALVINGS = 12, BANDS_PER_ROOT = 1, FEW_EDGES = 32, MOVES_PER_ELEMENT = 16 };
+enum { LARGE_BLOCK = 4, MOST_HALVINGS = 12, BAND_DIVISOR = 4, FEW_EDGES = 128, MOVES_PER_ELEMENT = 16 };
 
 typedef struct enf_slab_edge {
     double left, right; ///< height at the borders of the slab
@@ -146,7 +146,7 @@ static void prepare(enf_silhouette *work, double *low, double *high) {
 /// Allocates the bands and sets their borders.
 static bool make_borders(enf_silhouette *work, double low, double high) {
     size_t count =
-        work->edge_count <= FEW_EDGES ? 1 : 1 + (size_t)(sqrt((double)work->edge_count) * BANDS_PER_ROOT);
+        work->edge_count <= FEW_EDGES ? 1 : 1 + (size_t)(sqrt((double)work->edge_count) / BAND_DIVISOR);
     if (!enf_array_reserve(work->borders, work->border_capacity, count + 1) ||
         !enf_array_reserve(work->band_first, work->band_capacity, count + 2))
         return false;
@@ -252,17 +252,18 @@ static size_t list_events(enf_silhouette *work) {
 }
 
 /// Collects the parts of the edges within the band, the turns of the winding number along its lower border,
-/// and the borders of all slabs.
+/// and the borders of all slabs. An only band has no list: all edges are its parts.
 static bool fill_band(enf_silhouette *work, size_t band, size_t *event_count) {
-    const uint32_t *listed = work->band_edges + work->band_first[band];
-    size_t count = work->band_first[band + 1] - work->band_first[band];
+    bool is_only = work->band_count == 1;
+    const uint32_t *listed = is_only ? NULL : work->band_edges + work->band_first[band];
+    size_t count = is_only ? work->edge_count : work->band_first[band + 1] - work->band_first[band];
     if (!enf_array_reserve(work->parts, work->part_capacity, count) ||
         !enf_array_reserve(work->turns, work->turn_capacity, count) ||
         !enf_array_reserve(work->events, work->event_capacity, 3 * count))
         return false;
     work->part_count = work->turn_count = 0;
     for (size_t i = 0; i < count; ++i)
-        add_part(work, &work->edges[listed[i]], work->borders[band], work->borders[band + 1]);
+        add_part(work, &work->edges[is_only ? i : listed[i]], work->borders[band], work->borders[band + 1]);
     sort_contour(work->parts, work->part_count);
     sort_turns(work->turns, work->turn_count);
     *event_count = list_events(work);
@@ -453,7 +454,8 @@ bool enf_silhouette_area(enf_silhouette *work, double *area) {
     double low, high;
     prepare(work, &low, &high);
     if (work->edge_count == 0) return true;
-    if (!make_borders(work, low, high) || !order_edges(work) || !list_edges(work)) return false;
+    if (!make_borders(work, low, high)) return false;
+    if (work->band_count > 1 && (!order_edges(work) || !list_edges(work))) return false;
     for (size_t band = 0; band < work->band_count; ++band)
         if (!add_band(work, band, area)) return false;
     work->edge_count = 0;

@@ -347,13 +347,12 @@ static float round_down(double value) {
     return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
 }
 
-/// The lower of two; the first if the other is no number.
-static float lower_of(float a, float b) {
-    return b < a ? b : a;
-}
-
-static float higher_of(float a, float b) {
-    return b > a ? b : a;
+/// Extends the bounding box; a coordinate that is no number extends nothing.
+static void include_point(enf_body *body, const double point[3]) {
+    for (int k = 0; k < 3; ++k) {
+        if (point[k] < (double)body->low[k]) body->low[k] = round_down(point[k]);
+        if (point[k] > (double)body->high[k]) body->high[k] = -round_down(-point[k]);
+    }
 }
 
 /// A corner of the piece, or null when it has none left.
@@ -369,13 +368,8 @@ static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
     piece->next[side & 1] = -1;
     append_sides(surface, body, side, side);
     ++body->side_count;
-    for (int32_t i = 0; i < piece->corner_count; ++i) {
-        const double *point = surface->vertices[surface->corners[piece->first_corner + i]];
-        for (int k = 0; k < 3; ++k) {
-            body->low[k] = lower_of(body->low[k], round_down(point[k]));
-            body->high[k] = higher_of(body->high[k], -round_down(-point[k]));
-        }
-    }
+    for (int32_t i = 0; i < piece->corner_count; ++i)
+        include_point(body, surface->vertices[surface->corners[piece->first_corner + i]]);
     const double *point = first_corner_of(surface, side / 2);
     const double *origin = first_corner_of(surface, body->first_side / 2);
     if (!point || !origin) return;
@@ -466,8 +460,8 @@ void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
     body->fine_count += other->fine_count;
     body->volume += other->volume;
     for (int k = 0; k < 3; ++k) {
-        body->low[k] = lower_of(body->low[k], other->low[k]);
-        body->high[k] = higher_of(body->high[k], other->high[k]);
+        if (other->low[k] < body->low[k]) body->low[k] = other->low[k];
+        if (other->high[k] > body->high[k]) body->high[k] = other->high[k];
     }
     other->first_side = other->last_side = -1;
     other->side_count = 0;
