@@ -328,7 +328,7 @@ static void renumber(enf_portal_heap *portals, int32_t cell, int32_t smallest) {
     }
 }
 
-void enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t *kept, int32_t *gone) {
+bool enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t *kept, int32_t *gone) {
     enf_portal *portal = &portals->portals[number];
     int32_t a = portal->cell[0], b = portal->cell[1];
     int32_t smallest_a = portals->smallest[a], smallest_b = portals->smallest[b];
@@ -343,7 +343,8 @@ void enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t 
     // The cell with more portals keeps its place, so a portal is handed over only log n times.
     int32_t large = portals->degree[a] >= portals->degree[b] ? a : b, small = large == a ? b : a;
     if (!enf_surface_is_lid(&portals->surface, small)) ++portals->age[large];
-    enf_surface_merge(&portals->surface, large, small);
+    if (!enf_surface_merge(&portals->surface, large, small)) return false;
     if (portals->smallest[large] != *kept) renumber(portals, large, *kept);
     move_portals(portals, large, small);
+    return true;
 }

@@ -57,7 +57,8 @@ void enf_portal_heap_free(enf_portal_heap *portals);
 /// The lightest portal and its true weight, in graph units; *portal is -1 when none is left.
 enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t *portal, double *weight, enf_error *error);
 
-/// Makes one cell of the two cells of a portal; tells the smallest fine cells that they had.
-void enf_portal_heap_collapse(enf_portal_heap *portals, int32_t portal, int32_t *kept, int32_t *gone);
+/// Makes one cell of the two cells of a portal; tells the smallest fine cells that they had. Returns false
+/// when there is no memory.
+bool enf_portal_heap_collapse(enf_portal_heap *portals, int32_t portal, int32_t *kept, int32_t *gone);
 
 #endif

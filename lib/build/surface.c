@@ -8,7 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+/// Only the time depends on this: sides of a body that is looked at as a lid.
+enum { MOST_LID_SIDES = 32 };
+
 void enf_surface_free(enf_surface *surface) {
+    for (int32_t cell = 0; cell < surface->cell_count; ++cell)
+        if (surface->bodies[cell].side_capacity > 0) free(surface->bodies[cell].sides);
+    free(surface->fine_sides);
     free(surface->piece_cell);
     free(surface->piece_open);
     free(surface->pieces);
@@ -175,11 +181,13 @@ static bool allocate(enf_surface *surface, size_t pieces, size_t corners, size_t
     surface->pieces = enf_array_new(pieces, sizeof *surface->pieces);
     surface->corners = enf_array_new(corners, sizeof *surface->corners);
     surface->bodies = enf_array_new(cells, sizeof *surface->bodies);
+    surface->fine_sides = enf_array_new(2 * pieces, sizeof *surface->fine_sides);
     // A body with moments has two fine cells or more.
     surface->moments = enf_array_new(cells / 2, sizeof *surface->moments);
     surface->moments_free = enf_array_new(cells / 2, sizeof *surface->moments_free);
     return surface->piece_cell && surface->piece_open && surface->piece_hidden && surface->pieces &&
-           surface->corners && surface->bodies && surface->moments && surface->moments_free;
+           surface->corners && surface->bodies && surface->fine_sides && surface->moments &&
+           surface->moments_free;
 }
 
 /// Vertices by their coordinates: open addressing, at most half full, -1 is free.
@@ -329,19 +337,6 @@ static bool fill_pieces(enf_surface *surface, const sorted_pieces *sorted) {
     return good;
 }
 
-static int32_t *next_of(enf_surface *surface, int32_t side) {
-    return &surface->pieces[side / 2].next[side & 1];
-}
-
-/// Appends a list of sides to that of a body.
-static void append_sides(enf_surface *surface, enf_body *body, int32_t first, int32_t last) {
-    if (body->first_side < 0)
-        body->first_side = first;
-    else
-        *next_of(surface, body->last_side) = first;
-    if (last >= 0) body->last_side = last;
-}
-
 static float round_down(double value) {
     float rounded = (float)value;
     return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
@@ -365,13 +360,11 @@ static const double *first_corner_of(const enf_surface *surface, int32_t piece) 
 static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
     enf_body *body = &surface->bodies[cell];
     enf_surface_piece *piece = &surface->pieces[side / 2];
-    piece->next[side & 1] = -1;
-    append_sides(surface, body, side, side);
-    ++body->side_count;
+    body->sides[body->side_count++] = side;
     for (int32_t i = 0; i < piece->corner_count; ++i)
         include_point(body, surface->vertices[surface->corners[piece->first_corner + i]]);
     const double *point = first_corner_of(surface, side / 2);
-    const double *origin = first_corner_of(surface, body->first_side / 2);
+    const double *origin = first_corner_of(surface, body->sides[0] / 2);
     if (!point || !origin) return;
     for (int k = 0; k < 3; ++k) {
         double outward = piece->area[k];
@@ -379,15 +372,25 @@ static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
     }
 }
 
+/// Gives each fine cell its part of one array of sides.
 static void fill_bodies(enf_surface *surface, int32_t cell_count) {
     surface->cell_count = cell_count;
     for (int32_t cell = 0; cell < cell_count; ++cell)
-        surface->bodies[cell] = (enf_body){.first_side = -1,
-                                           .last_side = -1,
-                                           .fine_count = 1,
+        surface->bodies[cell] = (enf_body){.fine_count = 1,
                                            .moments = -1,
                                            .low = {INFINITY, INFINITY, INFINITY},
                                            .high = {-INFINITY, -INFINITY, -INFINITY}};
+    for (int32_t piece = 0; piece < surface->piece_count; ++piece)
+        for (int s = 0; s < 2; ++s)
+            if (surface->piece_cell[piece][s] >= 0)
+                ++surface->bodies[surface->piece_cell[piece][s]].side_count;
+    int32_t *sides = surface->fine_sides;
+    for (int32_t cell = 0; cell < cell_count; ++cell) {
+        enf_body *body = &surface->bodies[cell];
+        body->sides = sides;
+        sides += body->side_count;
+        body->side_count = 0;
+    }
     for (int32_t piece = 0; piece < surface->piece_count; ++piece)
         for (int s = 0; s < 2; ++s)
             if (surface->piece_cell[piece][s] >= 0)
@@ -414,10 +417,11 @@ enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_
 static enf_moments measure_fine(const enf_surface *surface, const enf_body *body) {
     enf_moments sums = {0};
     const double *origin = NULL, *corners[3];
-    for (int32_t side = body->first_side; side >= 0; side = surface->pieces[side / 2].next[side & 1]) {
+    for (int32_t s = 0; s < body->side_count; ++s) {
+        int32_t side = body->sides[s];
         const enf_surface_piece *piece = &surface->pieces[side / 2];
         const int32_t *outline = surface->corners + piece->first_corner;
-        if (!origin) origin = first_corner_of(surface, side / 2);
+        if (!origin && piece->corner_count > 0) origin = surface->vertices[outline[0]];
         for (int32_t i = 1; i + 1 < piece->corner_count; ++i) {
             corners[0] = surface->vertices[outline[0]];
             corners[1] = surface->vertices[outline[i]];
@@ -452,51 +456,68 @@ static void merge_moments(enf_surface *surface, enf_body *body, enf_body *other)
     other->moments = -1;
 }
 
-void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
+static void free_sides(enf_body *body) {
+    if (body->side_capacity > 0) free(body->sides);
+    body->sides = NULL;
+    body->side_count = 0;
+    body->side_capacity = 0;
+}
+
+/// Moves the sides of `other` to those of the body: the fewer to the more, so a side moves only log n times.
+static bool merge_sides(enf_body *body, enf_body *other) {
+    enf_body *more = body->side_count >= other->side_count ? body : other,
+             *fewer = more == body ? other : body;
+    size_t capacity = (size_t)more->side_capacity, count = (size_t)more->side_count;
+    size_t wanted = count + (size_t)fewer->side_count;
+    int32_t *sides = capacity > 0 ? more->sides : NULL;
+    if (!enf_array_reserve(sides, capacity, wanted)) return false;
+    if (more->side_capacity == 0) memcpy(sides, more->sides, count * sizeof *sides);
+    memcpy(sides + count, fewer->sides, (size_t)fewer->side_count * sizeof *sides);
+    free_sides(fewer);
+    more->side_capacity = 0; // its array has moved to `sides`
+    free_sides(other);
+    body->sides = sides;
+    body->side_count = (int32_t)wanted;
+    body->side_capacity = (int32_t)capacity;
+    return true;
+}
+
+bool enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
     enf_body *body = &surface->bodies[kept], *other = &surface->bodies[gone];
     merge_moments(surface, body, other);
-    append_sides(surface, body, other->first_side, other->last_side);
-    body->side_count += other->side_count;
+    if (!merge_sides(body, other)) return false;
     body->fine_count += other->fine_count;
     body->volume += other->volume;
     for (int k = 0; k < 3; ++k) {
         if (other->low[k] < body->low[k]) body->low[k] = other->low[k];
         if (other->high[k] > body->high[k]) body->high[k] = other->high[k];
     }
-    other->first_side = other->last_side = -1;
-    other->side_count = 0;
+    return true;
 }
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Walks over the sides of a cell, unlinks those of gone pieces, appends those that face the direction, and
+/// Walks over the sides of a cell, takes out those of gone pieces, appends those that face the direction, and
 /// returns half the sum of all projected areas.
 static double collect_facing(enf_surface *surface, int32_t cell, const double direction[3],
                              size_t *facing_count) {
     enf_body *body = &surface->bodies[cell];
     bool hiding = surface->hidden_count > 0;
     double sum = 0;
-    int32_t last = -1;
-    for (int32_t side = body->first_side, next; side >= 0; side = next) {
+    int32_t kept = 0;
+    for (int32_t i = 0; i < body->side_count; ++i) {
+        int32_t side = body->sides[i];
         const enf_surface_piece *piece = &surface->pieces[side / 2];
-        next = piece->next[side & 1];
-        if (is_gone(piece)) {
-            if (last < 0)
-                body->first_side = next;
-            else
-                *next_of(surface, last) = next;
-            --body->side_count;
-            continue;
-        }
-        last = side;
+        if (is_gone(piece)) continue;
+        body->sides[kept++] = side;
         if (hiding && surface->piece_hidden[side / 2]) continue;
         double projected = dot(piece->area, direction);
         sum += fabs(projected);
         if (side & 1 ? projected < 0 : projected > 0) surface->facing[(*facing_count)++] = side;
     }
-    body->last_side = last;
+    body->side_count = kept;
     return sum / 2;
 }
 
@@ -516,7 +537,9 @@ static void show_pieces(enf_surface *surface, size_t from) {
 bool enf_surface_plug(enf_surface *surface, int32_t neighbour, const double direction[3],
                       size_t hidden_before) {
     bool towards = false, away = false;
-    for (int32_t side = surface->bodies[neighbour].first_side; side >= 0; side = *next_of(surface, side)) {
+    const enf_body *body = &surface->bodies[neighbour];
+    for (int32_t i = 0; i < body->side_count; ++i) {
+        int32_t side = body->sides[i];
         if (is_gone(&surface->pieces[side / 2]) || surface->piece_hidden[side / 2]) continue;
         double projected = dot(surface->pieces[side / 2].area, direction);
         if (side & 1) projected = -projected;
@@ -634,14 +657,10 @@ double enf_surface_box_silhouette(const enf_surface *surface, int32_t cell, cons
 }
 
 bool enf_surface_is_lid(const enf_surface *surface, int32_t cell) {
-    const enf_surface_piece *pieces = surface->pieces;
-    bool found = false;
-    for (int32_t side = surface->bodies[cell].first_side, seen = 0; side >= 0;
-         side = pieces[side / 2].next[side & 1]) {
-        if (++seen > 32) return false;
-        if (is_gone(&pieces[side / 2])) continue;
-        if (found) return false;
-        found = true;
-    }
-    return true;
+    const enf_body *body = &surface->bodies[cell];
+    int remaining = 0;
+    if (body->side_count > MOST_LID_SIDES) return false;
+    for (int32_t i = 0; i < body->side_count && remaining <= 1; ++i)
+        remaining += !is_gone(&surface->pieces[body->sides[i] / 2]);
+    return remaining <= 1;
 }

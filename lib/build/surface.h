@@ -15,18 +15,18 @@
 
 /// A piece. As its cell s (0, 1) sees it, it is side number 2 * piece + s.
 typedef struct enf_surface_piece {
-    double area[3];  ///< area vector, pointing out of cell 0, into cell 1; [0] is NaN when the piece is gone:
-                     ///< its cells have become one
-    int32_t next[2]; ///< the next side of the same cell, or -1
+    double area[3]; ///< area vector, pointing out of cell 0, into cell 1; [0] is NaN when the piece is gone:
+                    ///< its cells have become one
     int32_t first_corner, corner_count; ///< the outline, counter-clockwise seen from cell 1's side
 } enf_surface_piece;
 
 /// What is known of a cell as a body.
 typedef struct enf_body {
-    int32_t first_side, last_side; ///< the list of its sides, possibly with gone pieces in it; -1: none
-    int32_t side_count;            ///< length of that list
-    int32_t fine_count;            ///< fine cells in it; 1: convex
-    int32_t moments;               ///< where they are kept; -1: it is a fine cell
+    int32_t *sides;        ///< possibly with gone pieces among them
+    int32_t side_count;    ///< length of that list
+    int32_t side_capacity; ///< 0: the list is a part of fine_sides
+    int32_t fine_count;    ///< fine cells in it; 1: convex
+    int32_t moments;       ///< where they are kept; -1: it is a fine cell
     double volume;
     float low[3], high[3]; ///< bounding box, rounded outwards
 } enf_body;
@@ -46,6 +46,7 @@ typedef struct enf_surface {
 
     int32_t cell_count;
     enf_body *bodies;
+    int32_t *fine_sides;  ///< the sides of all fine cells
     enf_moments *moments; ///< of bodies of several fine cells
     int32_t moments_count;
     int32_t *moments_free; ///< places in moments that a body has left
@@ -75,8 +76,9 @@ double enf_surface_piece_area(const enf_surface *surface, int32_t piece);
 void enf_surface_drop(enf_surface *surface, int32_t piece);
 
 /// Adds the body of `gone` to that of `kept`. The pieces between them must be dropped before the next
-/// silhouette, but after the last one.
-void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone);
+/// silhouette, but after the last one. Returns false when there is no memory: then the surface is of no more
+/// use.
+bool enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone);
 
 /// Area of the cell's silhouette seen along the unit vector `direction`. When half the sum of all projected
 /// pieces, an upper bound, is at most `enough`, returns that instead. Negative when there is no memory.
