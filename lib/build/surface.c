@@ -469,6 +469,7 @@ static bool merge_sides(enf_body *body, enf_body *other) {
              *fewer = more == body ? other : body;
     size_t capacity = (size_t)more->side_capacity, count = (size_t)more->side_count;
     size_t wanted = count + (size_t)fewer->side_count;
+    if (wanted == 0) return true;
     int32_t *sides = capacity > 0 ? more->sides : NULL;
     if (!enf_array_reserve(sides, capacity, wanted)) return false;
     if (more->side_capacity == 0) memcpy(sides, more->sides, count * sizeof *sides);
