@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "build/moments.h"
 #include "build/silhouette.h"
 
 static uint64_t next_random(uint64_t *state) {
@@ -233,6 +234,48 @@ static void numbers_that_are_none_do_no_harm(void **state) {
     enf_silhouette_free(&work);
 }
 
+/// The moments of a parallelepiped that spans from the origin along three edges, as six tetrahedra joined.
+static enf_moments measure_block(const double edge[3][3]) {
+    static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    static const double origin[3] = {0, 0, 0};
+    enf_moments block = {0};
+    for (int t = 0; t < 6; ++t) {
+        double corner[4][3] = {{0}};
+        for (int i = 1; i < 4; ++i)
+            for (int k = 0; k < 3; ++k) corner[i][k] = corner[i - 1][k] + edge[orders[t][i - 1]][k];
+        const double *const face[3] = {corner[1], corner[2], corner[3]};
+        enf_moments part = {0};
+        enf_moments_add_cone(&part, origin, face, t < 3 ? 1 : -1);
+        enf_moments_finish(&part, origin);
+        if (t == 0)
+            block = part;
+        else
+            enf_moments_join(&block, &part);
+    }
+    return block;
+}
+
+static void moments_bound_the_silhouette_of_a_block(void **state) {
+    (void)state;
+    static const double edge[3][3] = {{3, 0, 0}, {1, 2, 0}, {0.5, -0.25, 1}};
+    const enf_moments block = measure_block(edge);
+    assert_true(fabs(block.volume - 6) < 1e-12);
+    for (int i = 0; i < 400; ++i) {
+        double n[3] = {sin(i), sin(i * 1.7), cos(i * 0.3)}, truth = 0;
+        for (int k = 0; k < 3 && i < 3; ++k) n[k] = edge[i][k];
+        double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int k = 0; k < 3; ++k) n[k] /= length;
+        for (int a = 0; a < 3; ++a) {
+            const double *u = edge[a], *v = edge[(a + 1) % 3];
+            truth += fabs(n[0] * (u[1] * v[2] - u[2] * v[1]) + n[1] * (u[2] * v[0] - u[0] * v[2]) +
+                          n[2] * (u[0] * v[1] - u[1] * v[0]));
+        }
+        double bound = enf_moments_silhouette_bound(&block, n);
+        assert_true(bound <= truth);
+        assert_true(bound >= truth * (i < 3 ? 0.9999 : 0.5)); // exact along an edge
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_has_no_area),
@@ -243,6 +286,7 @@ int main(void) {
         cmocka_unit_test(the_order_of_the_edges_does_not_change_a_bit),
         cmocka_unit_test(many_needles_through_one_point_are_done),
         cmocka_unit_test(numbers_that_are_none_do_no_harm),
+        cmocka_unit_test(moments_bound_the_silhouette_of_a_block),
     };
     return cmocka_run_group_tests_name("silhouette", tests, NULL, NULL);
 }

@@ -126,7 +126,8 @@ static enf_status collapse_all(task *task, enf_decimation *out, enf_error *error
         if (is_done(task->stop, cells, out->next_weight)) return ENF_OK;
         enf_collapse *collapse = &out->collapses[out->collapse_count++];
         collapse->weight = out->next_weight;
-        enf_portal_heap_collapse(&task->portals, portal, &collapse->kept, &collapse->gone);
+        if (!enf_portal_heap_collapse(&task->portals, portal, &collapse->kept, &collapse->gone))
+            return enf_fail_memory(error, "the surface of a cell");
         --cells;
         if (task->stop->rule == ENF_STOP_AUTO && task->portals.heuristic == ENF_HEURISTIC_ASPECT &&
             collapse->weight > jump_from)

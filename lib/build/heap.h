@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An indexed binary heap: numbered items, the one with the smallest key on top, and the key of any item can
-// be raised or lowered where it stands (Cormen et al., Introduction to Algorithms, chapter 6).
+// An indexed heap: numbered items, the one with the smallest key on top, and the key of any item can be
+// raised or lowered where it stands (Cormen et al., Introduction to Algorithms, chapter 6; Johnson, 1975).
 #ifndef ENF_BUILD_HEAP_H
 #define ENF_BUILD_HEAP_H
 
@@ -18,7 +18,7 @@ typedef struct enf_heap {
     struct enf_heap_entry {
         enf_heap_key key; ///< beside the item, so that comparing them touches nothing else
         int32_t item;
-    } * entries;     ///< the heap: the children of place i are at 2i+1 and 2i+2
+    } * entries;     ///< the heap: the children of place i are at 4i+1 to 4i+4
     int32_t *places; ///< for each item its place, or -1 when it is not in the heap
 } enf_heap;
 
@@ -40,6 +40,10 @@ void enf_heap_set(enf_heap *heap, int32_t item, enf_heap_key key);
 /// Takes an item out; nothing happens when it is not in.
 void enf_heap_remove(enf_heap *heap, int32_t item);
 
-bool enf_heap_key_less(enf_heap_key a, enf_heap_key b);
+static inline bool enf_heap_key_less(enf_heap_key a, enf_heap_key b) {
+    if (a.weight != b.weight) return a.weight < b.weight;
+    if (a.first != b.first) return a.first < b.first;
+    return a.second < b.second;
+}
 
 #endif

@@ -6,44 +6,45 @@
 
 #include <stdlib.h>
 
+typedef struct enf_pair_slot pair_slot;
+
 bool enf_pair_table_create(enf_pair_table *table, size_t capacity) {
     *table = (enf_pair_table){0};
     size_t slots = 16;
     while (slots / 4 * 3 < capacity + 1 && slots < SIZE_MAX / 4) slots *= 2;
     table->mask = slots - 1;
-    table->keys = enf_array_new(slots, sizeof *table->keys);
-    table->values = enf_array_new(slots, sizeof *table->values);
-    if (!table->keys || !table->values) {
-        enf_pair_table_free(table);
-        return false;
-    }
-    for (size_t i = 0; i < slots; ++i) table->values[i] = -1;
+    table->slots = enf_array_new(slots, sizeof *table->slots);
+    if (!table->slots) return false;
+    for (size_t i = 0; i < slots; ++i) table->slots[i].value = -1;
     return true;
 }
 
 void enf_pair_table_free(enf_pair_table *table) {
-    free(table->keys);
-    free(table->values);
+    free(table->slots);
     *table = (enf_pair_table){0};
 }
 
-static uint64_t key_of(int32_t a, int32_t b) {
-    uint32_t low = (uint32_t)(a < b ? a : b), high = (uint32_t)(a < b ? b : a);
-    return (uint64_t)high << 32 | low;
-}
-
-static size_t home_of(const enf_pair_table *table, uint64_t key) {
-    key = (key ^ key >> 32) * 0x9e3779b97f4a7c15u;
+static size_t home_of(const enf_pair_table *table, uint32_t low, uint32_t high) {
+    uint64_t key = ((uint64_t)high << 32 | low) ^ high;
+    key *= 0x9e3779b97f4a7c15u;
     key = (key ^ key >> 29) * 0xbf58476d1ce4e5b9u;
     return (size_t)(key ^ key >> 32) & table->mask;
 }
 
+/// The slot of the pair, or the empty one where it would be.
+static pair_slot *find(const enf_pair_table *table, uint32_t low, uint32_t high) {
+    size_t at = home_of(table, low, high);
+    while (table->slots[at].value >= 0 && (table->slots[at].low != low || table->slots[at].high != high))
+        at = (at + 1) & table->mask;
+    return &table->slots[at];
+}
+
 int32_t *enf_pair_table_at(enf_pair_table *table, int32_t a, int32_t b) {
-    uint64_t key = key_of(a, b);
-    size_t slot = home_of(table, key);
-    while (table->values[slot] >= 0 && table->keys[slot] != key) slot = (slot + 1) & table->mask;
-    table->keys[slot] = key;
-    return &table->values[slot];
+    uint32_t low = (uint32_t)(a < b ? a : b), high = (uint32_t)(a < b ? b : a);
+    pair_slot *slot = find(table, low, high);
+    slot->low = low;
+    slot->high = high;
+    return &slot->value;
 }
 
 bool enf_pair_table_reserve(enf_pair_table *table, size_t capacity) {
@@ -51,11 +52,8 @@ bool enf_pair_table_reserve(enf_pair_table *table, size_t capacity) {
     enf_pair_table grown;
     if (!enf_pair_table_create(&grown, 2 * capacity)) return false;
     for (size_t i = 0; i <= table->mask; ++i) {
-        if (table->values[i] < 0) continue;
-        size_t slot = home_of(&grown, table->keys[i]);
-        while (grown.values[slot] >= 0) slot = (slot + 1) & grown.mask;
-        grown.keys[slot] = table->keys[i];
-        grown.values[slot] = table->values[i];
+        const pair_slot *slot = &table->slots[i];
+        if (slot->value >= 0) *find(&grown, slot->low, slot->high) = *slot;
     }
     enf_pair_table_free(table);
     *table = grown;
@@ -63,17 +61,17 @@ bool enf_pair_table_reserve(enf_pair_table *table, size_t capacity) {
 }
 
 void enf_pair_table_remove(enf_pair_table *table, int32_t a, int32_t b) {
-    int32_t *value = enf_pair_table_at(table, a, b);
-    if (*value < 0) return;
-    size_t hole = (size_t)(value - table->values), slot = hole;
+    uint32_t low = (uint32_t)(a < b ? a : b), high = (uint32_t)(a < b ? b : a);
+    const pair_slot *found = find(table, low, high);
+    if (found->value < 0) return;
+    size_t hole = (size_t)(found - table->slots), at = hole;
     for (;;) {
-        slot = (slot + 1) & table->mask;
-        if (table->values[slot] < 0) break;
-        size_t home = home_of(table, table->keys[slot]);
-        if (((slot - home) & table->mask) < ((slot - hole) & table->mask)) continue;
-        table->keys[hole] = table->keys[slot];
-        table->values[hole] = table->values[slot];
-        hole = slot;
+        at = (at + 1) & table->mask;
+        if (table->slots[at].value < 0) break;
+        size_t home = home_of(table, table->slots[at].low, table->slots[at].high);
+        if (((at - home) & table->mask) < ((at - hole) & table->mask)) continue;
+        table->slots[hole] = table->slots[at];
+        hole = at;
     }
-    table->values[hole] = -1;
+    table->slots[hole].value = -1;
 }

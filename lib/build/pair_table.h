@@ -7,9 +7,11 @@
 #include "enfilade/base.h"
 
 typedef struct enf_pair_table {
-    size_t mask;     ///< slots - 1; the number of slots is a power of two
-    uint64_t *keys;  ///< larger number in the high half, smaller in the low half
-    int32_t *values; ///< -1: the slot is empty
+    size_t mask; ///< slots - 1; the number of slots is a power of two
+    struct enf_pair_slot {
+        uint32_t low, high; ///< the smaller number and the larger one
+        int32_t value;      ///< -1: the slot is empty
+    } * slots;
 } enf_pair_table;
 
 /// Room for `capacity` entries at any one time. Returns false when there is no memory.

@@ -9,7 +9,7 @@
 
 /// Only the time depends on these two: from how many sides on a cell is plugged, and how many a plug has at
 /// most.
-enum { PLUGGED_SIDES = 64, PLUG_SIDES = 24 };
+enum { PLUGGED_SIDES = 256, PLUG_SIDES = 24 };
 
 void enf_portal_heap_free(enf_portal_heap *portals) {
     enf_surface_free(&portals->surface);
@@ -17,10 +17,7 @@ void enf_portal_heap_free(enf_portal_heap *portals) {
     enf_heap_free(&portals->heap);
     free(portals->portals);
     free(portals->piece_next);
-    free(portals->first_portal);
-    free(portals->degree);
-    free(portals->smallest);
-    free(portals->age);
+    free(portals->cells);
     *portals = (enf_portal_heap){0};
 }
 
@@ -30,23 +27,23 @@ static int side_of(const enf_portal *portal, int32_t cell) {
 
 static void link_portal(enf_portal_heap *portals, int32_t number, int side) {
     enf_portal *portal = &portals->portals[number];
-    int32_t cell = portal->cell[side], first = portals->first_portal[cell];
+    int32_t cell = portal->cell[side], first = portals->cells[cell].first_portal;
     portal->previous[side] = -1;
     portal->next[side] = first;
     if (first >= 0) portals->portals[first].previous[side_of(&portals->portals[first], cell)] = number;
-    portals->first_portal[cell] = number;
-    ++portals->degree[cell];
+    portals->cells[cell].first_portal = number;
+    ++portals->cells[cell].degree;
 }
 
 static void unlink_portal(enf_portal_heap *portals, int32_t number, int side) {
     enf_portal *portal = &portals->portals[number];
     int32_t cell = portal->cell[side], next = portal->next[side], previous = portal->previous[side];
     if (previous < 0)
-        portals->first_portal[cell] = next;
+        portals->cells[cell].first_portal = next;
     else
         portals->portals[previous].next[side_of(&portals->portals[previous], cell)] = next;
     if (next >= 0) portals->portals[next].previous[side_of(&portals->portals[next], cell)] = previous;
-    --portals->degree[cell];
+    --portals->cells[cell].degree;
 }
 
 /// The unit normal of the portal's plane, its first component that is not 0 positive.
@@ -81,12 +78,12 @@ static double weight_of(const enf_portal_heap *portals, const enf_portal *portal
 
 static void set_key(enf_portal_heap *portals, int32_t number, double weight) {
     const enf_portal *portal = &portals->portals[number];
-    int32_t a = portals->smallest[portal->cell[0]], b = portals->smallest[portal->cell[1]];
+    int32_t a = portals->cells[portal->cell[0]].smallest, b = portals->cells[portal->cell[1]].smallest;
     enf_heap_set(&portals->heap, number, (enf_heap_key){weight, a < b ? a : b, a < b ? b : a});
 }
 
 static bool is_fresh(const enf_portal_heap *portals, const enf_portal *portal) {
-    return portal->weighed_at == portals->age[portal->cell[0]] + portals->age[portal->cell[1]];
+    return portal->weighed_at == portals->cells[portal->cell[0]].age + portals->cells[portal->cell[1]].age;
 }
 
 /// A lower bound of the weight that costs no look at the surfaces.
@@ -106,7 +103,7 @@ static bool plug_dents(enf_portal_heap *portals, int32_t cell, const double norm
     enf_surface *surface = &portals->surface;
     if (surface->bodies[cell].side_count < PLUGGED_SIDES || surface->bodies[cell].fine_count == 1)
         return true;
-    for (int32_t number = portals->first_portal[cell]; number >= 0;) {
+    for (int32_t number = portals->cells[cell].first_portal; number >= 0;) {
         const enf_portal *portal = &portals->portals[number];
         int side = side_of(portal, cell);
         number = portal->next[side];
@@ -126,7 +123,7 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
     normal_of(portals, portal, normal);
     bool known[2];
     for (int s = 0; s < 2; ++s) {
-        known[s] = portal->silhouette_at[s] == portals->age[portal->cell[s]];
+        known[s] = portal->silhouette_at[s] == portals->cells[portal->cell[s]].age;
         if (known[s]) largest = fmax(largest, portal->silhouette[s]);
     }
     const enf_body *bodies = portals->surface.bodies;
@@ -134,15 +131,16 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
     for (int i = 0; i < 2; ++i) {
         int s = i ? !first : first;
         if (known[s]) continue;
+        if (enf_surface_box_silhouette(&portals->surface, portal->cell[s], normal) <= largest) continue;
         if (!plug_dents(portals, portal->cell[s], normal)) return false;
         double area = enf_surface_silhouette(&portals->surface, portal->cell[s], normal, largest);
         if (area < 0) return false;
         if (area <= largest) continue;
         largest = area;
         portal->silhouette[s] = area;
-        portal->silhouette_at[s] = portals->age[portal->cell[s]];
+        portal->silhouette_at[s] = portals->cells[portal->cell[s]].age;
     }
-    portal->weighed_at = portals->age[portal->cell[0]] + portals->age[portal->cell[1]];
+    portal->weighed_at = portals->cells[portal->cell[0]].age + portals->cells[portal->cell[1]].age;
     ++portals->evaluations;
     *weight = weight_of(portals, portal, largest);
     return true;
@@ -151,19 +149,13 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
 static bool allocate(enf_portal_heap *portals, size_t cells, size_t pieces, size_t count) {
     portals->portals = enf_array_zeroed(count, sizeof *portals->portals);
     portals->piece_next = enf_array_new(pieces, sizeof *portals->piece_next);
-    portals->first_portal = enf_array_new(cells, sizeof *portals->first_portal);
-    portals->degree = enf_array_zeroed(cells, sizeof *portals->degree);
-    portals->smallest = enf_array_new(cells, sizeof *portals->smallest);
-    portals->age = enf_array_new(cells, sizeof *portals->age);
-    if (!portals->portals || !portals->piece_next || !portals->first_portal || !portals->degree ||
-        !portals->smallest || !portals->age || !enf_pair_table_create(&portals->table, count) ||
-        !enf_heap_create(&portals->heap, (int32_t)count))
+    portals->cells = enf_array_new(cells, sizeof *portals->cells);
+    if (!portals->portals || !portals->piece_next || !portals->cells ||
+        !enf_pair_table_create(&portals->table, count) || !enf_heap_create(&portals->heap, (int32_t)count))
         return false;
-    for (size_t cell = 0; cell < cells; ++cell) {
-        portals->first_portal[cell] = -1;
-        portals->smallest[cell] = (int32_t)cell;
-        portals->age[cell] = 1;
-    }
+    for (size_t cell = 0; cell < cells; ++cell)
+        portals->cells[cell] =
+            (enf_portal_cell){.first_portal = -1, .degree = 0, .smallest = (int32_t)cell, .age = 1};
     return true;
 }
 
@@ -287,7 +279,7 @@ static void join_portals(enf_portal_heap *portals, int32_t number, int side, con
         for (int s = 0; s < 2; ++s) portal->silhouette[s] = portal->silhouette_at[s] = 0;
     if (same_normal(before_other, normal)) {
         portal->silhouette[side] = fmax(portal->silhouette[side], other->silhouette[other_side]);
-        if (portal->silhouette_at[!side] != portals->age[portal->cell[!side]]) {
+        if (portal->silhouette_at[!side] != portals->cells[portal->cell[!side]].age) {
             portal->silhouette[!side] = fmax(portal->silhouette[!side], other->silhouette[!other_side]);
             portal->silhouette_at[!side] = other->silhouette_at[!other_side];
         }
@@ -298,7 +290,7 @@ static void join_portals(enf_portal_heap *portals, int32_t number, int side, con
 
 /// Gives all portals of the gone cell to the kept one.
 static void move_portals(enf_portal_heap *portals, int32_t kept, int32_t gone) {
-    for (int32_t number = portals->first_portal[gone], next; number >= 0; number = next) {
+    for (int32_t number = portals->cells[gone].first_portal, next; number >= 0; number = next) {
         enf_portal *portal = &portals->portals[number];
         int side = side_of(portal, gone);
         next = portal->next[side];
@@ -313,24 +305,24 @@ static void move_portals(enf_portal_heap *portals, int32_t kept, int32_t gone) {
         enf_heap_remove(&portals->heap, number);
         join_portals(portals, twin, side_of(&portals->portals[twin], kept), portal, side);
     }
-    portals->first_portal[gone] = -1;
-    portals->degree[gone] = 0;
+    portals->cells[gone].first_portal = -1;
+    portals->cells[gone].degree = 0;
 }
 
 /// The kept cell has a smaller number to show: that decides ties.
 static void renumber(enf_portal_heap *portals, int32_t cell, int32_t smallest) {
-    portals->smallest[cell] = smallest;
-    for (int32_t number = portals->first_portal[cell]; number >= 0;) {
+    portals->cells[cell].smallest = smallest;
+    for (int32_t number = portals->cells[cell].first_portal; number >= 0;) {
         const enf_portal *portal = &portals->portals[number];
         set_key(portals, number, enf_heap_key_of(&portals->heap, number).weight);
         number = portal->next[side_of(portal, cell)];
     }
 }
 
-void enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t *kept, int32_t *gone) {
+bool enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t *kept, int32_t *gone) {
     enf_portal *portal = &portals->portals[number];
     int32_t a = portal->cell[0], b = portal->cell[1];
-    int32_t smallest_a = portals->smallest[a], smallest_b = portals->smallest[b];
+    int32_t smallest_a = portals->cells[a].smallest, smallest_b = portals->cells[b].smallest;
     *kept = smallest_a < smallest_b ? smallest_a : smallest_b;
     *gone = smallest_a < smallest_b ? smallest_b : smallest_a;
     enf_heap_remove(&portals->heap, number);
@@ -340,9 +332,10 @@ void enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t 
     for (int32_t piece = portal->first_piece; piece >= 0; piece = portals->piece_next[piece])
         enf_surface_drop(&portals->surface, piece);
     // The cell with more portals keeps its place, so a portal is handed over only log n times.
-    int32_t large = portals->degree[a] >= portals->degree[b] ? a : b, small = large == a ? b : a;
-    if (!enf_surface_is_lid(&portals->surface, small)) ++portals->age[large];
-    enf_surface_merge(&portals->surface, large, small);
-    if (portals->smallest[large] != *kept) renumber(portals, large, *kept);
+    int32_t large = portals->cells[a].degree >= portals->cells[b].degree ? a : b, small = large == a ? b : a;
+    if (!enf_surface_is_lid(&portals->surface, small)) ++portals->cells[large].age;
+    if (!enf_surface_merge(&portals->surface, large, small)) return false;
+    if (portals->cells[large].smallest != *kept) renumber(portals, large, *kept);
     move_portals(portals, large, small);
+    return true;
 }

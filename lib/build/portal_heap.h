@@ -34,6 +34,14 @@ typedef struct enf_portal {
     double sum[3];        ///< of the area vectors, from cell 0 to cell 1
 } enf_portal;
 
+/// What the portals of a cell have in common.
+typedef struct enf_portal_cell {
+    int32_t first_portal; ///< the list of its portals, or -1
+    int32_t degree;       ///< the length of that list
+    int32_t smallest;     ///< the smallest fine cell in it
+    uint32_t age;         ///< counts the times when its silhouettes may have grown; from 1
+} enf_portal_cell;
+
 typedef struct enf_portal_heap {
     enf_surface surface;
     enf_heuristic heuristic;
@@ -42,11 +50,8 @@ typedef struct enf_portal_heap {
     int32_t *piece_next;  ///< for each piece the next one of the same portal, or -1
     enf_pair_table table; ///< two cells -> their portal
     enf_heap heap;
-    int32_t *first_portal; ///< for each cell the list of its portals, or -1
-    int32_t *degree;       ///< for each cell the length of that list
-    int32_t *smallest;     ///< for each cell the smallest fine cell in it
-    uint32_t *age;         ///< for each cell, counts the times when its silhouettes may have grown; from 1
-    size_t evaluations;    ///< weights computed
+    enf_portal_cell *cells;
+    size_t evaluations; ///< weights computed
 } enf_portal_heap;
 
 /// Takes the graph: it is empty afterwards, whatever the outcome.
@@ -57,7 +62,8 @@ void enf_portal_heap_free(enf_portal_heap *portals);
 /// The lightest portal and its true weight, in graph units; *portal is -1 when none is left.
 enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t *portal, double *weight, enf_error *error);
 
-/// Makes one cell of the two cells of a portal; tells the smallest fine cells that they had.
-void enf_portal_heap_collapse(enf_portal_heap *portals, int32_t portal, int32_t *kept, int32_t *gone);
+/// Makes one cell of the two cells of a portal; tells the smallest fine cells that they had. Returns false
+/// when there is no memory.
+bool enf_portal_heap_collapse(enf_portal_heap *portals, int32_t portal, int32_t *kept, int32_t *gone);
 
 #endif

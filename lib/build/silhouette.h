@@ -26,6 +26,14 @@ typedef struct enf_border_turn {
 typedef struct enf_silhouette {
     enf_contour_edge *edges; ///< the figure: fill with enf_silhouette_add
     size_t edge_count, edge_capacity;
+    uint32_t *bucket_first; ///< where each bucket begins in ordered
+    uint32_t *ordered;      ///< the edges nearly in the order of their left ends
+    size_t bucket_capacity, ordered_capacity;
+    double *borders; ///< of the bands, ascending
+    size_t band_count, border_capacity;
+    size_t *band_first;   ///< per band and one more: where its list in band_edges begins
+    uint32_t *band_edges; ///< the edges of each band
+    size_t band_capacity, listed_capacity;
     enf_contour_edge *parts; ///< the edges within the band
     size_t part_count, part_capacity;
     enf_border_turn *turns; ///< along the lower border of the band

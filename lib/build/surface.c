@@ -3,263 +3,33 @@
 #include "build/surface.h"
 
 #include "base/array.h"
-#include "build/pair_table.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/// Only the time depends on this: sides of a body that is looked at as a lid.
+enum { MOST_LID_SIDES = 32 };
+
 void enf_surface_free(enf_surface *surface) {
+    for (int32_t cell = 0; cell < surface->cell_count; ++cell)
+        if (surface->bodies[cell].side_capacity > 0) free(surface->bodies[cell].sides);
+    free(surface->fine_sides);
     free(surface->piece_cell);
     free(surface->piece_open);
-    free(surface->piece_edge);
-    free(surface->piece_edges);
     free(surface->pieces);
-    free(surface->edges);
+    free(surface->corners);
     free(surface->vertices);
     free(surface->bodies);
-    free(surface->edge_sum);
-    free(surface->touched);
+    free(surface->moments);
+    free(surface->moments_free);
     free(surface->facing);
     free(surface->piece_hidden);
     free(surface->hidden);
     free(surface->plugs);
+    enf_contour_free(&surface->contour);
     enf_silhouette_free(&surface->silhouette);
     *surface = (enf_surface){0};
-}
-
-/// A piece of the graph on its way into canonical order.
-typedef struct sorted_piece {
-    uint32_t beyond; ///< the larger of its cells; -1 becomes the largest number
-    int32_t piece;
-    int32_t start; ///< its smallest corner, where the outline begins
-    bool turned;   ///< the outline is to be run backwards, because the cells were swapped
-} sorted_piece;
-
-/// All of them, in lists by the smaller cell.
-typedef struct sorted_pieces {
-    const enf_graph *graph;
-    sorted_piece *pieces;
-    int32_t *first; ///< per cell and one more: where its list begins
-    int64_t corner_count;
-} sorted_pieces;
-
-static const double *corner_of(const enf_graph *graph, const sorted_piece *sorted, int32_t i) {
-    int64_t begin = graph->piece_corner[sorted->piece], end = graph->piece_corner[sorted->piece + 1];
-    int64_t count = end - begin,
-            at = sorted->turned ? sorted->start - (int64_t)i : sorted->start + (int64_t)i;
-    if (at < 0) at += count;
-    return graph->vertices[graph->corners[begin + (at < count ? at : at - count)]];
-}
-
-/// The same in graph units.
-static void take_corner(const enf_graph *graph, const sorted_piece *sorted, int32_t i, double corner[3]) {
-    const double *at = corner_of(graph, sorted, i);
-    for (int k = 0; k < 3; ++k) corner[k] = at[k] * graph->scale;
-}
-
-static int32_t corner_count_of(const enf_graph *graph, int32_t piece) {
-    return (int32_t)(graph->piece_corner[piece + 1] - graph->piece_corner[piece]);
-}
-
-static int compare_points(const double a[3], const double b[3]) {
-    for (int k = 0; k < 3; ++k)
-        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
-    return 0;
-}
-
-/// The order of pieces with the same smaller cell.
-static bool comes_before(const enf_graph *graph, const sorted_piece *a, const sorted_piece *b) {
-    if (a->beyond != b->beyond) return a->beyond < b->beyond;
-    bool open_a = graph->piece_open[a->piece], open_b = graph->piece_open[b->piece];
-    if (open_a != open_b) return open_a;
-    int32_t count_a = corner_count_of(graph, a->piece), count_b = corner_count_of(graph, b->piece);
-    for (int32_t i = 0; i < count_a && i < count_b; ++i) {
-        int order = compare_points(corner_of(graph, a, i), corner_of(graph, b, i));
-        if (order) return order < 0;
-    }
-    return count_a < count_b;
-}
-
-/// A heap sort: the lists are short, but one cell may have any number of pieces. Pieces that compare equal
-/// are equal to the last bit, so their order does not matter.
-static void sort_list(const enf_graph *graph, sorted_piece *list, int32_t count) {
-    for (int32_t built = count / 2, end = count; end > 1;) {
-        sorted_piece moved;
-        if (built > 0) {
-            moved = list[--built];
-        } else {
-            moved = list[--end];
-            list[end] = list[0];
-        }
-        int64_t place = built, child;
-        while ((child = 2 * place + 1) < end) {
-            if (child + 1 < end && comes_before(graph, &list[child], &list[child + 1])) ++child;
-            if (!comes_before(graph, &moved, &list[child])) break;
-            list[place] = list[child];
-            place = child;
-        }
-        list[place] = moved;
-    }
-}
-
-static enf_status check_piece(const enf_graph *graph, int32_t piece, enf_error *error) {
-    int32_t back = graph->piece_cell[piece][0], front = graph->piece_cell[piece][1];
-    int64_t begin = graph->piece_corner[piece], end = graph->piece_corner[piece + 1];
-    if (back >= -1 && back < graph->cell_count && front >= -1 && front < graph->cell_count && begin >= 0 &&
-        end >= begin && end - begin <= INT32_MAX)
-        return ENF_OK;
-    return enf_fail(error, ENF_BAD_INPUT,
-                    "cell graph: piece %d has cells %d and %d of %d, corners %lld to %lld", (int)piece,
-                    (int)back, (int)front, (int)graph->cell_count, (long long)begin, (long long)end);
-}
-
-/// The smaller cell of a piece that bounds anything (-1 counts as the largest number), or -1.
-static int32_t lower_cell(const enf_graph *graph, int32_t piece) {
-    int32_t back = graph->piece_cell[piece][0], front = graph->piece_cell[piece][1];
-    if (back == front || corner_count_of(graph, piece) < 3) return -1;
-    return (uint32_t)back < (uint32_t)front ? back : front;
-}
-
-static void fill_list(const sorted_pieces *sorted, int32_t piece, int32_t *place) {
-    const enf_graph *graph = sorted->graph;
-    int32_t cell = lower_cell(graph, piece);
-    if (cell < 0) return;
-    int64_t begin = graph->piece_corner[piece], end = graph->piece_corner[piece + 1];
-    bool turned = graph->piece_cell[piece][0] != cell;
-    sorted_piece *added = &sorted->pieces[place[cell]++];
-    *added = (sorted_piece){
-        .beyond = (uint32_t)graph->piece_cell[piece][!turned], .piece = piece, .turned = turned};
-    for (int64_t i = begin + 1; i < end; ++i)
-        if (compare_points(graph->vertices[graph->corners[i]],
-                           graph->vertices[graph->corners[begin + added->start]]) < 0)
-            added->start = (int32_t)(i - begin);
-}
-
-static void free_sorted(sorted_pieces *sorted) {
-    free(sorted->pieces);
-    free(sorted->first);
-}
-
-/// Count, prefix sum, fill; then each cell's list by itself.
-static enf_status sort_pieces(sorted_pieces *sorted, const enf_graph *graph, enf_error *error) {
-    size_t cells = (size_t)graph->cell_count;
-    *sorted = (sorted_pieces){.graph = graph};
-    sorted->first = enf_array_zeroed(cells + 2, sizeof *sorted->first);
-    if (!sorted->first) return enf_fail_memory(error, "the pieces of the cell graph");
-    int32_t *place = sorted->first + 1; // shifted by one while filling
-    for (int32_t piece = 0; piece < graph->piece_count; ++piece) {
-        enf_status status = check_piece(graph, piece, error);
-        if (status != ENF_OK) return status;
-        int32_t cell = lower_cell(graph, piece);
-        if (cell < 0) continue;
-        ++place[cell + 1];
-        sorted->corner_count += corner_count_of(graph, piece);
-    }
-    if (sorted->corner_count > INT32_MAX / 2)
-        return enf_fail(error, ENF_NO_RESOURCES, "cell graph: more than %d corners; split the world",
-                        INT32_MAX / 2);
-    for (size_t i = 0; i < cells; ++i) place[i + 1] += place[i];
-    sorted->pieces = enf_array_new((size_t)place[cells], sizeof *sorted->pieces);
-    if (!sorted->pieces) return enf_fail_memory(error, "the pieces of the cell graph");
-    for (int32_t piece = 0; piece < graph->piece_count; ++piece) fill_list(sorted, piece, place);
-    for (size_t i = 0; i < cells; ++i)
-        sort_list(graph, sorted->pieces + sorted->first[i], sorted->first[i + 1] - sorted->first[i]);
-    return ENF_OK;
-}
-
-static bool allocate(enf_surface *surface, size_t pieces, size_t corners, size_t cells) {
-    surface->piece_cell = enf_array_new(pieces, sizeof *surface->piece_cell);
-    surface->piece_open = enf_array_new(pieces, sizeof *surface->piece_open);
-    surface->piece_hidden = enf_array_zeroed(pieces, sizeof *surface->piece_hidden);
-    surface->piece_edge = enf_array_zeroed(pieces + 1, sizeof *surface->piece_edge);
-    surface->piece_edges = enf_array_new(corners, sizeof *surface->piece_edges);
-    surface->pieces = enf_array_new(pieces, sizeof *surface->pieces);
-    surface->bodies = enf_array_new(cells, sizeof *surface->bodies);
-    return surface->piece_cell && surface->piece_open && surface->piece_hidden && surface->piece_edge &&
-           surface->piece_edges && surface->pieces && surface->bodies;
-}
-
-/// Vertices by their coordinates: open addressing, at most half full, -1 is free.
-typedef struct vertex_table {
-    int32_t *slots;
-    size_t mask;
-} vertex_table;
-
-/// Where the point is, or would be.
-static size_t slot_of(const enf_surface *surface, const vertex_table *table, const double point[3]) {
-    uint64_t hash = 0;
-    for (int k = 0; k < 3; ++k) {
-        uint64_t bits;
-        memcpy(&bits, &point[k], sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
-    size_t slot = hash & table->mask;
-    while (table->slots[slot] >= 0 &&
-           memcmp(surface->vertices[table->slots[slot]], point, 3 * sizeof *point) != 0)
-        slot = (slot + 1) & table->mask;
-    return slot;
-}
-
-static bool grow_table(const enf_surface *surface, vertex_table *table) {
-    size_t slots = table->slots ? 2 * (table->mask + 1) : 1024;
-    int32_t *grown = enf_array_new(slots, sizeof *grown);
-    if (!grown) return false;
-    for (size_t i = 0; i < slots; ++i) grown[i] = -1;
-    free(table->slots);
-    *table = (vertex_table){grown, slots - 1};
-    for (int32_t v = 0; v < surface->vertex_count; ++v)
-        table->slots[slot_of(surface, table, surface->vertices[v])] = v;
-    return true;
-}
-
-/// Finds or adds a vertex. Negative without memory.
-static int32_t vertex_at(enf_surface *surface, vertex_table *table, const enf_graph *graph,
-                         const sorted_piece *sorted, int32_t corner) {
-    double point[3];
-    take_corner(graph, sorted, corner, point);
-    for (int k = 0; k < 3; ++k) point[k] += 0.0; // -0 becomes 0
-    if (2 * (size_t)surface->vertex_count >= table->mask && !grow_table(surface, table)) return -1;
-    size_t slot = slot_of(surface, table, point);
-    if (table->slots[slot] >= 0) return table->slots[slot];
-    if (!enf_array_reserve(surface->vertices, surface->vertex_capacity, (size_t)surface->vertex_count + 1))
-        return -1;
-    memcpy(surface->vertices[surface->vertex_count], point, sizeof point);
-    return table->slots[slot] = surface->vertex_count++;
-}
-
-/// Negative without memory.
-static int32_t edge_at(enf_surface *surface, enf_pair_table *table, int32_t from, int32_t to) {
-    int32_t *edge = NULL;
-    if (enf_pair_table_reserve(table, (size_t)surface->edge_count + 1) &&
-        enf_array_reserve(surface->edges, surface->edge_capacity, (size_t)surface->edge_count + 1))
-        edge = enf_pair_table_at(table, from, to);
-    if (!edge) return -1;
-    if (*edge < 0) {
-        *edge = surface->edge_count++;
-        surface->edges[*edge][0] = from < to ? from : to;
-        surface->edges[*edge][1] = from < to ? to : from;
-    }
-    return 2 * *edge + (from > to);
-}
-
-/// Area vector of the outline, from the cross products with its first corner.
-static void measure_piece(const enf_graph *graph, const sorted_piece *sorted, double area[3]) {
-    double sum[3] = {0, 0, 0}, origin[3];
-    take_corner(graph, sorted, 0, origin);
-    for (int32_t i = 1; i + 1 < corner_count_of(graph, sorted->piece); ++i) {
-        double a[3], b[3];
-        take_corner(graph, sorted, i, a);
-        take_corner(graph, sorted, i + 1, b);
-        for (int k = 0; k < 3; ++k) {
-            a[k] -= origin[k];
-            b[k] -= origin[k];
-        }
-        for (int k = 0; k < 3; ++k)
-            sum[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-    }
-    for (int k = 0; k < 3; ++k) area[k] = sum[k] / 2;
 }
 
 static double length_of(const double v[3]) {
@@ -285,165 +55,112 @@ static bool is_gone(const enf_surface_piece *piece) {
     return piece->area[0] != piece->area[0];
 }
 
-/// Appends the edges of one piece.
-static bool add_outline(enf_surface *surface, const enf_graph *graph, const sorted_piece *from,
-                        vertex_table *vertices, enf_pair_table *edges, int32_t *at) {
-    int32_t count = corner_count_of(graph, from->piece);
-    int32_t first = vertex_at(surface, vertices, graph, from, 0), last = first;
-    for (int32_t i = 1; i <= count; ++i) {
-        int32_t next = i < count ? vertex_at(surface, vertices, graph, from, i) : first;
-        if (last < 0 || next < 0) return false;
-        if (next == last) continue;
-        int32_t edge = edge_at(surface, edges, last, next);
-        if (edge < 0) return false;
-        surface->piece_edges[(*at)++] = edge;
-        last = next;
+/// The moments of a fine cell: cones from a corner over triangles of its sides.
+static enf_moments measure_fine(const enf_surface *surface, const enf_body *body) {
+    enf_moments sums = {0};
+    const double *origin = NULL, *corners[3];
+    for (int32_t s = 0; s < body->side_count; ++s) {
+        int32_t side = body->sides[s];
+        const enf_surface_piece *piece = &surface->pieces[side / 2];
+        const int32_t *outline = surface->corners + piece->first_corner;
+        if (!origin && piece->corner_count > 0) origin = surface->vertices[outline[0]];
+        for (int32_t i = 1; i + 1 < piece->corner_count; ++i) {
+            corners[0] = surface->vertices[outline[0]];
+            corners[1] = surface->vertices[outline[i]];
+            corners[2] = surface->vertices[outline[i + 1]];
+            enf_moments_add_cone(&sums, origin, corners, side & 1 ? -1 : 1);
+        }
     }
+    if (origin) enf_moments_finish(&sums, origin);
+    return sums;
+}
+
+/// The moments of a body: where they are kept, or those of a fine cell in `fine`.
+static enf_moments *moments_of(enf_surface *surface, const enf_body *body, enf_moments *fine) {
+    if (body->moments >= 0) return &surface->moments[body->moments];
+    *fine = measure_fine(surface, body);
+    return fine;
+}
+
+/// Adds the moments of `other` to those of the body. They take a place that one of the two has, or a free
+/// one.
+static void merge_moments(enf_surface *surface, enf_body *body, enf_body *other) {
+    enf_moments fine[2], *moments = moments_of(surface, body, &fine[0]);
+    enf_moments_join(moments, moments_of(surface, other, &fine[1]));
+    if (body->moments >= 0 && other->moments >= 0)
+        surface->moments_free[surface->moments_free_count++] = other->moments;
+    else if (body->moments < 0 && other->moments >= 0)
+        body->moments = other->moments;
+    else if (body->moments < 0)
+        body->moments = surface->moments_free_count > 0 ? surface->moments_free[--surface->moments_free_count]
+                                                        : surface->moments_count++;
+    surface->moments[body->moments] = *moments;
+    other->moments = -1;
+}
+
+static void free_sides(enf_body *body) {
+    if (body->side_capacity > 0) free(body->sides);
+    body->sides = NULL;
+    body->side_count = 0;
+    body->side_capacity = 0;
+}
+
+/// Moves the sides of `other` to those of the body: the fewer to the more, so a side moves only log n times.
+static bool merge_sides(enf_body *body, enf_body *other) {
+    enf_body *more = body->side_count >= other->side_count ? body : other,
+             *fewer = more == body ? other : body;
+    size_t capacity = (size_t)more->side_capacity, count = (size_t)more->side_count;
+    size_t wanted = count + (size_t)fewer->side_count;
+    if (wanted == 0) return true;
+    int32_t *sides = capacity > 0 ? more->sides : NULL;
+    if (!enf_array_reserve(sides, capacity, wanted)) return false;
+    if (more->side_capacity == 0) memcpy(sides, more->sides, count * sizeof *sides);
+    memcpy(sides + count, fewer->sides, (size_t)fewer->side_count * sizeof *sides);
+    free_sides(fewer);
+    more->side_capacity = 0; // its array has moved to `sides`
+    free_sides(other);
+    body->sides = sides;
+    body->side_count = (int32_t)wanted;
+    body->side_capacity = (int32_t)capacity;
     return true;
 }
 
-static bool fill_pieces(enf_surface *surface, const sorted_pieces *sorted) {
-    const enf_graph *graph = sorted->graph;
-    vertex_table vertices = {0};
-    enf_pair_table edges;
-    bool good = enf_pair_table_create(&edges, 1024);
-    int32_t at = 0, piece = 0;
-    for (int32_t cell = 0; cell < graph->cell_count; ++cell) {
-        for (; good && piece < sorted->first[cell + 1]; ++piece) {
-            const sorted_piece *from = &sorted->pieces[piece];
-            surface->piece_cell[piece][0] = cell;
-            surface->piece_cell[piece][1] = (int32_t)from->beyond;
-            surface->piece_open[piece] = graph->piece_open[from->piece] && (int32_t)from->beyond >= 0;
-            measure_piece(graph, from, surface->pieces[piece].area);
-            good = add_outline(surface, graph, from, &vertices, &edges, &at);
-            surface->piece_edge[piece + 1] = at;
-        }
-    }
-    surface->piece_count = piece;
-    free(vertices.slots);
-    enf_pair_table_free(&edges);
-    surface->edge_sum = enf_array_zeroed((size_t)surface->edge_count, sizeof *surface->edge_sum);
-    return good && surface->edge_sum;
-}
-
-static int32_t *next_of(enf_surface *surface, int32_t side) {
-    return &surface->pieces[side / 2].next[side & 1];
-}
-
-/// Appends a list of sides to that of a body.
-static void append_sides(enf_surface *surface, enf_body *body, int32_t first, int32_t last) {
-    if (body->first_side < 0)
-        body->first_side = first;
-    else
-        *next_of(surface, body->last_side) = first;
-    if (last >= 0) body->last_side = last;
-}
-
-static float round_down(double value) {
-    float rounded = (float)value;
-    return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
-}
-
-/// Adds a side to its fine cell's list, bounding box and (by the divergence theorem) volume.
-static void add_side(enf_surface *surface, int32_t side, int32_t cell) {
-    enf_body *body = &surface->bodies[cell];
-    int32_t piece = side / 2;
-    surface->pieces[piece].next[side & 1] = -1;
-    append_sides(surface, body, side, side);
-    ++body->side_count;
-    const double *point = NULL, *origin = NULL;
-    for (int32_t i = surface->piece_edge[piece]; i < surface->piece_edge[piece + 1]; ++i)
-        for (int end = 0; end < 2; ++end) {
-            point = surface->vertices[surface->edges[surface->piece_edges[i] / 2][end]];
-            for (int k = 0; k < 3; ++k) {
-                body->low[k] = fminf(body->low[k], round_down(point[k]));
-                body->high[k] = fmaxf(body->high[k], -round_down(-point[k]));
-            }
-        }
-    int32_t origin_edge = surface->piece_edge[body->first_side / 2];
-    if (origin_edge < surface->piece_edge[body->first_side / 2 + 1])
-        origin = surface->vertices[surface->edges[surface->piece_edges[origin_edge] / 2][0]];
-    if (!point || !origin) return;
-    for (int k = 0; k < 3; ++k) {
-        double outward = surface->pieces[piece].area[k];
-        body->volume += (point[k] - origin[k]) * (side & 1 ? -outward : outward) / 3;
-    }
-}
-
-static void fill_bodies(enf_surface *surface, int32_t cell_count) {
-    surface->cell_count = cell_count;
-    for (int32_t cell = 0; cell < cell_count; ++cell)
-        surface->bodies[cell] = (enf_body){.first_side = -1,
-                                           .last_side = -1,
-                                           .fine_count = 1,
-                                           .low = {INFINITY, INFINITY, INFINITY},
-                                           .high = {-INFINITY, -INFINITY, -INFINITY}};
-    for (int32_t piece = 0; piece < surface->piece_count; ++piece)
-        for (int s = 0; s < 2; ++s)
-            if (surface->piece_cell[piece][s] >= 0)
-                add_side(surface, 2 * piece + s, surface->piece_cell[piece][s]);
-}
-
-enf_status enf_surface_create(enf_surface *surface, const enf_graph *graph, enf_error *error) {
-    *surface = (enf_surface){0};
-    sorted_pieces sorted;
-    enf_status status = sort_pieces(&sorted, graph, error);
-    if (status == ENF_OK && (!allocate(surface, (size_t)sorted.first[graph->cell_count],
-                                       (size_t)sorted.corner_count, (size_t)graph->cell_count) ||
-                             !fill_pieces(surface, &sorted)))
-        status = enf_fail_memory(error, "the surfaces of the cells");
-    free_sorted(&sorted);
-    if (status == ENF_OK)
-        fill_bodies(surface, graph->cell_count);
-    else
-        enf_surface_free(surface);
-    return status;
-}
-
-void enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
+bool enf_surface_merge(enf_surface *surface, int32_t kept, int32_t gone) {
     enf_body *body = &surface->bodies[kept], *other = &surface->bodies[gone];
-    append_sides(surface, body, other->first_side, other->last_side);
-    body->side_count += other->side_count;
+    merge_moments(surface, body, other);
+    if (!merge_sides(body, other)) return false;
     body->fine_count += other->fine_count;
     body->volume += other->volume;
     for (int k = 0; k < 3; ++k) {
-        body->low[k] = fminf(body->low[k], other->low[k]);
-        body->high[k] = fmaxf(body->high[k], other->high[k]);
+        if (other->low[k] < body->low[k]) body->low[k] = other->low[k];
+        if (other->high[k] > body->high[k]) body->high[k] = other->high[k];
     }
-    other->first_side = other->last_side = -1;
-    other->side_count = 0;
+    return true;
 }
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Walks over the sides of a cell, unlinks those of gone pieces, appends those that face the direction, and
+/// Walks over the sides of a cell, takes out those of gone pieces, appends those that face the direction, and
 /// returns half the sum of all projected areas.
 static double collect_facing(enf_surface *surface, int32_t cell, const double direction[3],
                              size_t *facing_count) {
     enf_body *body = &surface->bodies[cell];
     bool hiding = surface->hidden_count > 0;
     double sum = 0;
-    int32_t last = -1;
-    for (int32_t side = body->first_side, next; side >= 0; side = next) {
+    int32_t kept = 0;
+    for (int32_t i = 0; i < body->side_count; ++i) {
+        int32_t side = body->sides[i];
         const enf_surface_piece *piece = &surface->pieces[side / 2];
-        next = piece->next[side & 1];
-        if (is_gone(piece)) {
-            if (last < 0)
-                body->first_side = next;
-            else
-                *next_of(surface, last) = next;
-            --body->side_count;
-            continue;
-        }
-        last = side;
+        if (is_gone(piece)) continue;
+        body->sides[kept++] = side;
         if (hiding && surface->piece_hidden[side / 2]) continue;
         double projected = dot(piece->area, direction);
         sum += fabs(projected);
         if (side & 1 ? projected < 0 : projected > 0) surface->facing[(*facing_count)++] = side;
     }
-    body->last_side = last;
+    body->side_count = kept;
     return sum / 2;
 }
 
@@ -463,7 +180,9 @@ static void show_pieces(enf_surface *surface, size_t from) {
 bool enf_surface_plug(enf_surface *surface, int32_t neighbour, const double direction[3],
                       size_t hidden_before) {
     bool towards = false, away = false;
-    for (int32_t side = surface->bodies[neighbour].first_side; side >= 0; side = *next_of(surface, side)) {
+    const enf_body *body = &surface->bodies[neighbour];
+    for (int32_t i = 0; i < body->side_count; ++i) {
+        int32_t side = body->sides[i];
         if (is_gone(&surface->pieces[side / 2]) || surface->piece_hidden[side / 2]) continue;
         double projected = dot(surface->pieces[side / 2].area, direction);
         if (side & 1) projected = -projected;
@@ -510,74 +229,81 @@ static void span_plane(const double direction[3], double u[3], double v[3]) {
         v[k] = direction[(k + 1) % 3] * u[(k + 2) % 3] - direction[(k + 2) % 3] * u[(k + 1) % 3];
 }
 
-/// Sums up how often the facing pieces run each edge.
-static bool sum_edges(enf_surface *surface, size_t facing_count, size_t *touched_count) {
-    size_t count = 0;
+/// Runs the outlines of the facing sides.
+static bool find_contour(enf_surface *surface, size_t facing_count) {
+    size_t corners = 0;
+    for (size_t i = 0; i < facing_count; ++i)
+        corners += (size_t)surface->pieces[surface->facing[i] / 2].corner_count;
+    if (!enf_contour_start(&surface->contour, corners)) return false;
     for (size_t i = 0; i < facing_count; ++i) {
-        int32_t side = surface->facing[i], piece = side / 2;
-        int32_t begin = surface->piece_edge[piece], end = surface->piece_edge[piece + 1];
-        if (!enf_array_reserve(surface->touched, surface->touched_capacity, count + (size_t)(end - begin))) {
-            for (size_t k = 0; k < count; ++k) surface->edge_sum[surface->touched[k]] = 0;
-            return false;
-        }
-        for (int32_t k = begin; k < end; ++k) {
-            int32_t edge = surface->piece_edges[k] / 2;
-            bool backwards = (surface->piece_edges[k] & 1) != (side & 1);
-            surface->edge_sum[edge] += backwards ? -1 : 1;
-            surface->touched[count++] = edge;
-        }
+        const enf_surface_piece *piece = &surface->pieces[surface->facing[i] / 2];
+        const int32_t *outline = surface->corners + piece->first_corner;
+        int32_t times = surface->facing[i] & 1 ? -1 : 1;
+        for (int32_t k = 0, last = piece->corner_count - 1; k < piece->corner_count; last = k++)
+            enf_contour_run(&surface->contour, outline[last], outline[k], times);
     }
-    *touched_count = count;
     return true;
 }
 
 /// Hands the edges that don't cancel to the sweep.
-static bool add_contour(enf_surface *surface, size_t touched_count, const double direction[3]) {
+static bool add_contour(enf_surface *surface, const double direction[3]) {
+    const enf_contour *contour = &surface->contour;
     double u[3], v[3];
     span_plane(direction, u, v);
     enf_silhouette_clear(&surface->silhouette);
-    bool fine = true;
-    for (size_t i = 0; i < touched_count; ++i) {
-        int32_t edge = surface->touched[i], times = surface->edge_sum[edge];
-        if (times == 0) continue;
-        surface->edge_sum[edge] = 0;
-        const double *a = surface->vertices[surface->edges[edge][0]],
-                     *b = surface->vertices[surface->edges[edge][1]];
+    for (size_t i = 0; i < contour->filled_count; ++i) {
+        const enf_contour_slot *edge = &contour->slots[contour->filled[i]];
+        if (edge->times == 0) continue;
+        const double *a = surface->vertices[edge->from], *b = surface->vertices[edge->to];
         double from[2] = {dot(a, u), dot(a, v)}, to[2] = {dot(b, u), dot(b, v)};
-        fine = fine && enf_silhouette_add(&surface->silhouette, from, to, times);
+        if (!enf_silhouette_add(&surface->silhouette, from, to, edge->times)) return false;
     }
-    return fine;
+    return true;
 }
 
 double enf_surface_silhouette(enf_surface *surface, int32_t cell, const double direction[3], double enough) {
     const enf_body *body = &surface->bodies[cell];
-    size_t facing_count, touched_count;
-    double bound;
+    size_t facing_count;
+    double bound, area = 0;
     if (!collect_all(surface, cell, direction, &facing_count, &bound)) return -1;
     if (bound <= enough || body->fine_count == 1) return bound;
-    double area = 0;
-    if (!sum_edges(surface, facing_count, &touched_count) ||
-        !add_contour(surface, touched_count, direction) || !enf_silhouette_area(&surface->silhouette, &area))
+    if (!find_contour(surface, facing_count) || !add_contour(surface, direction) ||
+        !enf_silhouette_area(&surface->silhouette, &area))
         return -1;
     return area > 0 ? area : 0;
 }
 
+/// What bounds give way by for rounding.
+#define BOUND_SLACK 0x1p-20
+
 double enf_surface_silhouette_bound(const enf_surface *surface, int32_t cell, const double direction[3]) {
     const enf_body *body = &surface->bodies[cell];
-    double extent = 0;
-    for (int k = 0; k < 3; ++k) extent += fabs(direction[k]) * ((double)body->high[k] - (double)body->low[k]);
-    return extent > 0 && body->volume > 0 ? body->volume / extent * (1 - 0x1p-20) : 0;
+    double longest = INFINITY;
+    for (int k = 0; k < 3; ++k) {
+        double way = ((double)body->high[k] - (double)body->low[k]) / fabs(direction[k]);
+        if (way < longest) longest = way; // NaN: nothing along a flat side
+    }
+    double bound = longest > 0 && longest < INFINITY && body->volume > 0
+                       ? body->volume / longest * (1 - BOUND_SLACK)
+                       : 0;
+    if (body->moments < 0) return bound;
+    double other = enf_moments_silhouette_bound(&surface->moments[body->moments], direction);
+    return other > bound ? other : bound;
+}
+
+double enf_surface_box_silhouette(const enf_surface *surface, int32_t cell, const double direction[3]) {
+    const enf_body *body = &surface->bodies[cell];
+    double size[3], area = 0;
+    for (int k = 0; k < 3; ++k) size[k] = (double)body->high[k] - (double)body->low[k];
+    for (int k = 0; k < 3; ++k) area += fabs(direction[k]) * size[(k + 1) % 3] * size[(k + 2) % 3];
+    return area * (1 + BOUND_SLACK);
 }
 
 bool enf_surface_is_lid(const enf_surface *surface, int32_t cell) {
-    const enf_surface_piece *pieces = surface->pieces;
-    bool found = false;
-    for (int32_t side = surface->bodies[cell].first_side, seen = 0; side >= 0;
-         side = pieces[side / 2].next[side & 1]) {
-        if (++seen > 32) return false;
-        if (is_gone(&pieces[side / 2])) continue;
-        if (found) return false;
-        found = true;
-    }
-    return true;
+    const enf_body *body = &surface->bodies[cell];
+    int remaining = 0;
+    if (body->side_count > MOST_LID_SIDES) return false;
+    for (int32_t i = 0; i < body->side_count && remaining <= 1; ++i)
+        remaining += !is_gone(&surface->pieces[body->sides[i] / 2]);
+    return remaining <= 1;
 }
