@@ -4,6 +4,7 @@
 #include "base/array.h"
 #include "base/hash.h"
 #include "build/check.h"
+#include "build/gen.h"
 #include "build/write.h"
 
 #include <dirent.h>
@@ -26,6 +27,20 @@ void pipeline_read_model(enf_soup *soup, const char *name) {
     snprintf(path, sizeof path, "%s/%s.obj", ENFILADE_MODELS_DIR, name);
     memset(soup, 0, sizeof *soup);
     if (enf_soup_read(soup, path, &error) != ENF_OK) fail_msg("%s", error.text);
+}
+
+void pipeline_generate(enf_soup *soup, const char *name, const char *const *settings, size_t count) {
+    char path[] = "/tmp/enfilade-XXXXXX.obj";
+    enf_error error = {0};
+    int descriptor = mkstemps(path, 4);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+    assert_non_null(file);
+    enf_status status = enf_gen_write(name, settings, count, file, &error);
+    fclose(file);
+    memset(soup, 0, sizeof *soup);
+    if (status == ENF_OK) status = enf_soup_read(soup, path, &error);
+    unlink(path);
+    if (status != ENF_OK) fail_msg("%s", error.text);
 }
 
 const char *pipeline_shared(const char *name) {

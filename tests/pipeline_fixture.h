@@ -12,6 +12,9 @@ enf_build_options pipeline_options(void);
 /// Reads models/NAME.obj, or fails the test.
 void pipeline_read_model(enf_soup *soup, const char *name);
 
+/// Reads what `enfilade gen NAME settings...` prints, or fails the test.
+void pipeline_generate(enf_soup *soup, const char *name, const char *const *settings, size_t count);
+
 /// Path of a file below the shared data, or null (with a message) if that is absent. Holds until the next
 /// call.
 const char *pipeline_shared(const char *name);

@@ -124,6 +124,22 @@ static void the_number_of_threads_does_not_matter(void **state) {
     assert_unchanged(NULL, 3);
 }
 
+/// Large enough to be split in many parts (see build/parts.h), some with cuts, some with none.
+static void threads_that_share_many_parts_do_not_matter(void **state) {
+    (void)state;
+    const char *const settings[] = {"rooms=9", "detail=2"};
+    uint64_t fingerprint[2];
+    for (int i = 0; i < 2; i++) {
+        enf_soup soup;
+        enf_build build;
+        pipeline_generate(&soup, "caverns", settings, 2);
+        fingerprint[i] = built(&soup, &build, 1 + 2 * i);
+        if (i == 1) pipeline_check(&build);
+        enf_build_free(&build);
+    }
+    assert_true(fingerprint[0] == fingerprint[1]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_order_of_points_and_polygons_does_not_matter),
@@ -131,6 +147,7 @@ int main(void) {
         cmocka_unit_test(turns_by_right_angles_do_not_matter),
         cmocka_unit_test(mirrors_do_not_matter),
         cmocka_unit_test(the_number_of_threads_does_not_matter),
+        cmocka_unit_test(threads_that_share_many_parts_do_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
