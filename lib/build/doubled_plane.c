@@ -8,7 +8,8 @@
 /// Below: how far a determinant can be off, as a part of 6 * size^4 * reach, which bounds the sum of its
 /// terms' sizes. Each term passes through no more than three products of pairs, ten sums, and coefficients
 /// that are off by less than 2^-100: together less than 2^-97.
-#define UNSURE (6 * 0x1p-97)
+#define ROUNDING 0x1p-97
+#define UNSURE (6 * ROUNDING)
 
 #define WHOLE_MAX 0x1p53
 
@@ -84,17 +85,41 @@ static inline enf_doubled minor(const enf_doubled_plane *a, const enf_doubled_pl
     return subtract(multiply(a->normal[j], b->normal[k]), multiply(a->normal[k], b->normal[j]));
 }
 
-int enf_doubled_planes_sign(const enf_doubled_plane plane[4]) {
-    const enf_doubled_plane *a = &plane[0], *b = &plane[1], *c = &plane[2], *d = &plane[3];
-    // The first three meet in at / weight: at = -(offset_b * c x a + offset_c * a x b), weight = c . (a x b).
-    enf_doubled weight = {0, 0}, value = {0, 0};
+/// Three planes meet in -at / weight, as seen from the origin, which lies in the first:
+/// at = offset_b * c x a + offset_c * a x b, weight = c . (a x b).
+static inline void meet(const enf_doubled_plane plane[3], enf_doubled at[3], enf_doubled *weight) {
+    const enf_doubled_plane *a = &plane[0], *b = &plane[1], *c = &plane[2];
+    *weight = (enf_doubled){0, 0};
     for (int i = 0; i < 3; i++) {
         enf_doubled from_b = minor(c, a, i), from_c = minor(a, b, i);
-        enf_doubled at = add(multiply(b->offset, from_b), multiply(c->offset, from_c));
-        weight = add(weight, multiply(c->normal[i], from_c));
-        value = subtract(value, multiply(d->normal[i], at));
+        at[i] = add(multiply(b->offset, from_b), multiply(c->offset, from_c));
+        *weight = add(*weight, multiply(c->normal[i], from_c));
     }
-    value = add(value, multiply(d->offset, weight));
+}
+
+bool enf_doubled_planes_meet(const enf_doubled_plane plane[3], const double origin[3], double point[3]) {
+    const enf_doubled_plane *a = &plane[0], *b = &plane[1], *c = &plane[2];
+    enf_doubled at[3], weight;
+    double farthest = 0, terms = a->size * b->size * c->size;
+    meet(plane, at, &weight);
+    if (!(fabs(weight.high) > 2 * UNSURE * terms)) return false;
+    for (int i = 0; i < 3; i++) {
+        double quotient = at[i].high / weight.high;
+        enf_doubled rest = subtract(at[i], multiply_by(weight, quotient));
+        point[i] = origin[i] - quotient - rest.high / weight.high;
+        farthest = fabs(quotient) > farthest ? fabs(quotient) : farthest;
+    }
+    // What `at` can be off, and the weight: the latter may be half of what it seems.
+    double off = ROUNDING * terms * (2 * (b->reach + c->reach) + 6 * (farthest + 1));
+    return 2 * off < 0.25 * fabs(weight.high);
+}
+
+int enf_doubled_planes_sign(const enf_doubled_plane plane[4]) {
+    const enf_doubled_plane *a = &plane[0], *b = &plane[1], *c = &plane[2], *d = &plane[3];
+    enf_doubled at[3], weight;
+    meet(plane, at, &weight);
+    enf_doubled value = multiply(d->offset, weight);
+    for (int i = 0; i < 3; i++) value = subtract(value, multiply(d->normal[i], at[i]));
     double terms = a->size * b->size * c->size * d->size * (b->reach + c->reach + d->reach);
     if (fabs(value.high) > UNSURE * terms) return value.high > 0 ? 1 : -1;
     return 0;

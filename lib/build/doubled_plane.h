@@ -28,4 +28,8 @@ bool enf_doubled_plane_set(enf_doubled_plane *plane, const double p[3], const in
 /// first plane (whose offset is not looked at).
 int enf_doubled_planes_sign(const enf_doubled_plane plane[4]);
 
+/// The point in which the first three planes meet, rounded, each coordinate off by less than one step (1) or
+/// one unit in the last place, whichever is more. False if that is not certain.
+bool enf_doubled_planes_meet(const enf_doubled_plane plane[3], const double origin[3], double point[3]);
+
 #endif

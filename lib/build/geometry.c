@@ -327,18 +327,31 @@ static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int
     return holding >= 2;
 }
 
+/// A plane with coefficients in pairs, as seen from a point of another. False if they do not fit.
+static bool doubled_plane_of(const enf_geometry *geometry, int32_t plane, const double *origin,
+                             enf_doubled_plane *out) {
+    int64_t u[3], v[3];
+    whole_spans(geometry, plane, u, v);
+    return enf_doubled_plane_set(out, geometry->points + 3 * (size_t)geometry->planes[plane][0], u, v,
+                                 origin);
+}
+
+/// The planes of a crossing, as seen from a point of the first, which is the origin.
+static bool doubled_planes_of(const enf_geometry *geometry, const enf_crossing *crossing,
+                              enf_doubled_plane out[3], const double **origin) {
+    *origin = geometry->points + 3 * (size_t)geometry->planes[crossing->plane[0]][0];
+    bool fit = true;
+    for (int k = 0; fit && k < 3; k++) fit = doubled_plane_of(geometry, crossing->plane[k], *origin, &out[k]);
+    return fit;
+}
+
 /// The second tier: sign of the determinant of a crossing's planes and another, 0 if not certain.
 static int sign_in_pairs(const enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
     enf_doubled_plane doubled[4];
-    const double *origin = geometry->points + 3 * (size_t)geometry->planes[crossing->plane[0]][0];
-    for (int k = 0; k < 4; k++) {
-        int32_t one = k < 3 ? crossing->plane[k] : plane;
-        int64_t u[3], v[3];
-        whole_spans(geometry, one, u, v);
-        if (!enf_doubled_plane_set(&doubled[k], geometry->points + 3 * (size_t)geometry->planes[one][0], u, v,
-                                   origin)) {
-            return 0;
-        }
+    const double *origin;
+    if (!doubled_planes_of(geometry, crossing, doubled, &origin) ||
+        !doubled_plane_of(geometry, plane, origin, &doubled[3])) {
+        return 0;
     }
     return enf_doubled_planes_sign(doubled);
 }
@@ -481,6 +494,12 @@ void enf_geometry_position(const enf_geometry *geometry, int32_t vertex, double 
     // A quarter of a grid step is as good as the points themselves.
     if (crossing->at_error + 0x1p53 * crossing->weight_error < 0.25 * fabs(crossing->weight)) {
         for (int i = 0; i < 3; i++) position[i] = crossing->at[i] / crossing->weight;
+        return;
+    }
+    enf_doubled_plane doubled[3];
+    const double *origin;
+    if (doubled_planes_of(geometry, crossing, doubled, &origin) &&
+        enf_doubled_planes_meet(doubled, origin, position)) {
         return;
     }
     enf_exact_plane plane[3];
