@@ -93,6 +93,7 @@ enf_status cli_job_prepare(cli_job *job, const cli_settings *settings, enf_error
     options->plain_cells = settings->plain_cells;
     options->threads = settings->threads;
     options->memory = settings->memory;
+    options->measure_resident = true;
     if (settings->pvs != 0)
         return enf_fail(error, ENF_BAD_USAGE, "--pvs %s: visibility is not built yet; leave --pvs out",
                         cli_pvs_methods[settings->pvs]);

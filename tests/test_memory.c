@@ -63,8 +63,8 @@ static void what_does_not_fit_is_refused_in_words(void **state) {
     enf_memory_counts counts = {.points = 5000000, .polygons = 10000000, .corners = 30000000};
     enf_error error = {0};
     uint64_t needed = enf_memory_estimate(&counts);
-    assert_int_equal(enf_memory_admit(&counts, needed, &error), ENF_OK);
-    assert_int_equal(enf_memory_admit(&counts, needed - 1, &error), ENF_NO_RESOURCES);
+    assert_int_equal(enf_memory_admit(&counts, enf_memory_allow(needed), &error), ENF_OK);
+    assert_int_equal(enf_memory_admit(&counts, enf_memory_allow(needed - 1), &error), ENF_NO_RESOURCES);
     const char *const words[] = {"10000000 polygons", "GiB", "--memory allows", "--exclude", "--detail"};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (!strstr(error.text, words[i])) fail_msg("no '%s' in: %s", words[i], error.text);
@@ -81,7 +81,8 @@ static void what_cannot_be_numbered_is_refused_in_words(void **state) {
     };
     for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
         enf_error error = {0};
-        assert_int_equal(enf_memory_admit(&beyond[i], UINT64_MAX, &error), ENF_NO_RESOURCES);
+        assert_int_equal(enf_memory_admit(&beyond[i], enf_memory_allow(UINT64_MAX), &error),
+                         ENF_NO_RESOURCES);
         assert_non_null(strstr(error.text, "more than this build can number"));
     }
 }

@@ -84,7 +84,8 @@ static enf_status tetrahedralize(kitchen *k) {
     enf_memory_counts *counts = &k->build->counts;
     *counts = enf_memory_count(&k->build->soup, mesh);
     k->build->peak_bytes_least = k->build->peak_bytes_predicted = enf_memory_estimate(counts);
-    enf_status status = enf_memory_admit(counts, k->options->memory, k->error);
+    const enf_memory_allowance allowed = enf_memory_allow(k->options->memory);
+    enf_status status = enf_memory_admit(counts, allowed, k->error);
     if (status != ENF_OK) return status;
     static const struct {
         const char *name;
@@ -105,7 +106,7 @@ static enf_status tetrahedralize(kitchen *k) {
     say(k, "%d tetrahedra by %s", (int)k->tets.count, tetrahedralizers[chosen].name);
     enf_memory_count_tetrahedra(counts, mesh, &k->tets);
     k->build->peak_bytes_predicted = enf_memory_estimate(counts);
-    return enf_memory_admit(counts, k->options->memory, k->error);
+    return enf_memory_admit(counts, allowed, k->error);
 }
 
 static enf_status split(kitchen *k) {
@@ -210,7 +211,7 @@ static enf_status run_stage(kitchen *k, const char *name, enf_status (*stage)(ki
     report->seconds = enf_timer_now() - start;
     report->cpu_seconds = enf_timer_cpu() - cpu_start;
     report->peak_bytes = enf_memory_peak();
-    report->resident_bytes = enf_memory_resident();
+    if (k->options->measure_resident) report->resident_bytes = enf_memory_resident();
     return status;
 }
 

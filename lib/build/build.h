@@ -37,7 +37,8 @@ typedef struct enf_build_options {
     enf_heuristic heuristic;
     enf_stop stop;
     enf_keep keep;
-    bool plain_cells; ///< leave fine cells as the cuts make them; otherwise convex ones are joined
+    bool plain_cells;      ///< leave fine cells as the cuts make them; otherwise convex ones are joined
+    bool measure_resident; ///< stages report resident_bytes, which costs a look into a system file each
     int threads;
     uint64_t memory;        ///< bytes that the process may have at most; 0: what the system allows
     int stages;             ///< run only this many, the first; 0: all
@@ -51,7 +52,7 @@ typedef struct enf_stage_report {
     const char *name;
     double seconds, cpu_seconds; ///< by the clock; of the processor, all threads together
     uint64_t peak_bytes;         ///< the most memory that the process had until the end of the stage
-    uint64_t resident_bytes;     ///< what it had then
+    uint64_t resident_bytes;     ///< what it had then, if that was asked for
     bool ran;
     char why[160]; ///< why it was skipped, or what it skipped
 } enf_stage_report;

@@ -84,24 +84,29 @@ static void print_bytes(uint64_t bytes, char text[32]) {
     snprintf(text, 32, "%.3g %s", value, units[unit]);
 }
 
-enf_status enf_memory_admit(const enf_memory_counts *counts, uint64_t allowed, enf_error *error) {
+enf_memory_allowance enf_memory_allow(uint64_t bytes) {
+    enf_memory_allowance allowed = {bytes, "--memory"};
+    if (bytes == 0) allowed.bytes = enf_memory_limit(&allowed.limiter);
+    return allowed;
+}
+
+enf_status enf_memory_admit(const enf_memory_counts *counts, enf_memory_allowance allowed, enf_error *error) {
     if (!can_be_numbered(counts))
         return enf_fail(error, ENF_NO_RESOURCES,
                         "%llu polygons with %llu points are more than this build can number; cut the world "
                         "into parts",
                         (unsigned long long)counts->polygons, (unsigned long long)counts->points);
-    const char *limiter = "--memory";
-    uint64_t limit = allowed > 0 ? allowed : enf_memory_limit(&limiter), needed = enf_memory_estimate(counts);
-    if (needed <= limit) return ENF_OK;
+    uint64_t needed = enf_memory_estimate(counts);
+    if (needed <= allowed.bytes) return ENF_OK;
     char need[32], have[32];
     print_bytes(needed, need);
-    print_bytes(limit, have);
+    print_bytes(allowed.bytes, have);
     return enf_fail(
         error, ENF_NO_RESOURCES,
         "this world of %llu polygons will need about %s of memory, and %s allows %s; use a larger "
         "machine, allow more (--memory SIZE), leave parts of the world out (--exclude) or make "
         "small things detail (--detail)",
-        (unsigned long long)counts->polygons, need, limiter, have);
+        (unsigned long long)counts->polygons, need, allowed.limiter, have);
 }
 
 bool enf_memory_parse(const char *text, uint64_t *bytes) {

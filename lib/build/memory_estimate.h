@@ -27,9 +27,17 @@ double enf_memory_cuts(const enf_memory_counts *counts);
 /// what a world needs whose polygons cut nothing: the least that is to be expected.
 uint64_t enf_memory_estimate(const enf_memory_counts *counts);
 
-/// ENF_NO_RESOURCES, with words, if the estimate exceeds `allowed` (0: what the system allows), or the counts
-/// are beyond what this build can number.
-enf_status enf_memory_admit(const enf_memory_counts *counts, uint64_t allowed, enf_error *error);
+typedef struct enf_memory_allowance {
+    uint64_t bytes;
+    const char *limiter; ///< what allows no more
+} enf_memory_allowance;
+
+/// So many bytes by --memory; 0: what the system allows now (asks it: a dozen files).
+enf_memory_allowance enf_memory_allow(uint64_t bytes);
+
+/// ENF_NO_RESOURCES, with words, if the estimate exceeds what is allowed, or the counts are beyond what this
+/// build can number.
+enf_status enf_memory_admit(const enf_memory_counts *counts, enf_memory_allowance allowed, enf_error *error);
 
 /// "512M", "16G": a whole number above 0, with K, M, G or T for powers of 1024, or bytes. False for anything
 /// else.

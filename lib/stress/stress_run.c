@@ -163,6 +163,7 @@ void enf_stress_compile(enf_stress_case *made, const enf_build_options *options,
 enf_build_options enf_stress_build_options(const enf_stress_case *made, uint64_t seed, int cells) {
     enf_build_options options = {.clean = {.weld = made->weld, .plane_tolerance = -1},
                                  .keep = seed % 4 == 1 ? ENF_KEEP_OUTSIDE : ENF_KEEP_ALL,
+                                 .memory = UINT64_MAX, // whoever runs it sets the limit
                                  .threads = 1};
     if (cells > 0 && seed % 2) options.stop = (enf_stop){.rule = ENF_STOP_CELLS, .cells = cells};
     return options;
