@@ -7,6 +7,9 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
 
 __extension__ typedef __int128 enf_int128;
 __extension__ typedef unsigned __int128 enf_uint128;
@@ -21,7 +24,7 @@ __extension__ typedef unsigned __int128 enf_uint128;
 static inline uint64_t enf_limb_add(uint64_t a, uint64_t b, unsigned char *carry) {
 #ifdef __x86_64__
     unsigned long long sum;
-    *carry = __builtin_ia32_addcarryx_u64(*carry, a, b, &sum);
+    *carry = _addcarry_u64(*carry, a, b, &sum);
     return sum;
 #else
     enf_uint128 sum = (enf_uint128)a + b + *carry;
@@ -33,7 +36,7 @@ static inline uint64_t enf_limb_add(uint64_t a, uint64_t b, unsigned char *carry
 static inline uint64_t enf_limb_subtract(uint64_t a, uint64_t b, unsigned char *borrow) {
 #ifdef __x86_64__
     unsigned long long difference;
-    *borrow = __builtin_ia32_sbb_u64(*borrow, a, b, &difference);
+    *borrow = _subborrow_u64(*borrow, a, b, &difference);
     return difference;
 #else
     enf_uint128 difference = (enf_uint128)a - b - *borrow;
