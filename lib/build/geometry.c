@@ -148,7 +148,16 @@ const enf_plane_filter *enf_geometry_filter(const enf_geometry *geometry, int32_
                                             enf_plane_filter *room) {
     if (plane >= geometry->filter_first && (plane < geometry->filter_end || geometry->filter_end == 0))
         return &geometry->filters[plane - geometry->filter_first];
-    enf_geometry_make_filter(geometry, plane, room);
+    if (!geometry->kept) {
+        enf_geometry_make_filter(geometry, plane, room);
+        return room;
+    }
+    int slot = plane % ENF_FILTERS_KEPT;
+    if (geometry->kept->plane[slot] != plane + 1) {
+        geometry->kept->plane[slot] = plane + 1;
+        enf_geometry_make_filter(geometry, plane, &geometry->kept->filter[slot]);
+    }
+    *room = geometry->kept->filter[slot]; // another may take its place
     return room;
 }
 

@@ -34,6 +34,14 @@ typedef struct enf_crossing {
 /// What decides a predicate: doubles, pairs of doubles, whole numbers of any size.
 enum { ENF_TIER_FILTER, ENF_TIER_PAIRS, ENF_TIER_EXACT, ENF_TIERS };
 
+enum { ENF_FILTERS_KEPT = 64 };
+
+/// Filters that were made a while ago: what is cut crosses the same planes again and again.
+typedef struct enf_kept_filters {
+    int32_t plane[ENF_FILTERS_KEPT]; ///< + 1; 0: none
+    enf_plane_filter filter[ENF_FILTERS_KEPT];
+} enf_kept_filters;
+
 /// Vertices are numbered: points, then crossings.
 typedef struct enf_geometry {
     int32_t point_count;
@@ -44,6 +52,7 @@ typedef struct enf_geometry {
     /// needed.
     enf_plane_filter *filters;
     int32_t filter_first, filter_end;
+    enf_kept_filters *kept; ///< of these; null: none are kept. One thread's own
 
     enf_crossing *crossings; ///< vertex point_count + i
     int32_t crossing_count;

@@ -324,6 +324,7 @@ static void cut_by_all(cutter *c, size_t count, int32_t cell) {
     enf_cut_cell cut = {
         .cell = cell, .first_cell = (int32_t)space->cell_count, .first_node = (int32_t)space->node_count};
     space->plane = -1;
+    space->joined = c->next[cell] >= 0;
     c->hit_count = 0;
     weigh_candidates(c, count);
     for (size_t i = 0; i < count && !c->failed; i++) {

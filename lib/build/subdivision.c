@@ -8,10 +8,10 @@
 
 void enf_subdivision_free(enf_subdivision *s) {
     void *arrays[] = {
-        s->halves,      s->facets,     s->edge_half,       s->edge_slot,          s->cell_facet,
-        s->cell_parent, s->cell_state, s->shares,          s->cut_edges,          s->vertex_sign,
-        s->outline,     s->outline_at, s->touching,        s->geometry.crossings, s->node_plane,
-        s->node_child,  s->pairing,    s->tetrahedron_root};
+        s->halves,      s->facets,     s->edge_half,        s->edge_slot,          s->cell_facet,
+        s->cell_parent, s->cell_state, s->shares,           s->cut_edges,          s->vertex_sign,
+        s->outline,     s->outline_at, s->touching,         s->geometry.crossings, s->node_plane,
+        s->node_child,  s->pairing,    s->tetrahedron_root, s->geometry.kept};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     memset(s, 0, sizeof *s);
 }
@@ -176,8 +176,10 @@ static bool reserve_vertices(enf_subdivision *s, size_t count) {
 /// The geometry without the crossings of others.
 static void take_geometry(enf_subdivision *s, const enf_geometry *geometry) {
     enf_crossing *crossings = s->geometry.crossings;
+    enf_kept_filters *kept = s->geometry.kept;
     size_t capacity = s->geometry.crossing_capacity;
     s->geometry = *geometry;
+    s->geometry.kept = kept;
     s->geometry.crossings = crossings;
     s->geometry.crossing_capacity = capacity;
     s->geometry.crossing_count = 0;
@@ -189,12 +191,13 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
     size_t facets = (size_t)part->facet_count, count = (size_t)part->tetrahedron_count;
     size_t points = (size_t)geometry->point_count;
     take_geometry(s, geometry);
+    if (!s->geometry.kept) s->geometry.kept = enf_array_zeroed(1, sizeof *s->geometry.kept);
     s->half_count = s->facet_count = s->edge_count = s->node_count = 0;
     s->free_half = s->free_facet = s->free_edge = -1;
     s->cell_count = count;
     s->tetrahedron_count = part->tetrahedron_count;
     s->tetrahedron_planes = tets->facet_count;
-    if (!enf_array_reserve(s->tetrahedron_root, s->root_capacity, count + 1) ||
+    if (!s->geometry.kept || !enf_array_reserve(s->tetrahedron_root, s->root_capacity, count + 1) ||
         !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 1) ||
         !enf_array_reserve(s->facets, s->facet_capacity, facets + 1) ||
         !enf_array_reserve(s->edge_half, s->edge_capacity, 3 * facets + 1) ||
@@ -457,7 +460,7 @@ static bool add_cut_facet(enf_subdivision *s, int32_t node, int32_t cell, int32_
         at = s->outline_at[part->to];
     }
     s->facets[f] = (enf_share){.source = -1 - node, .first = first, .cover = -1};
-    straighten(s, first);
+    if (s->joined) straighten(s, first);
     hang(s, f, 0, cell);
     hang(s, f, 1, ahead);
     return true;

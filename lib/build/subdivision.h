@@ -78,6 +78,7 @@ typedef struct enf_subdivision {
 
     // The plane that cells are held against, and what is known of it.
     int32_t plane, plane_mark;
+    bool joined; ///< the cell at hand is a part of several tetrahedra: facets of these may lie in one plane
     enf_plane_filter filter;
     int32_t *vertex_sign; ///< per vertex: plane_mark * 4 + sign + 1, where the sign is known
     size_t sign_capacity;
