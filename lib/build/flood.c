@@ -46,7 +46,7 @@ typedef struct flooder {
 typedef struct flood {
     const enf_arrangement *arrangement;
     const int32_t *order; ///< polygons by plane
-    const place *places;  ///< per tetrahedron
+    place *places;        ///< per tetrahedron
     flood_block *blocks;
     flooder *flooders;
 } flood;
@@ -319,16 +319,21 @@ static int32_t *sort_by_plane(const enf_arrangement *arrangement) {
     return order;
 }
 
-static place *make_places(const enf_tet_mesh *tets) {
-    place *places = enf_array_new((size_t)tets->count, sizeof *places);
-    for (int32_t t = 0; places && t < tets->count; t++) {
-        memcpy(places[t].corner, tets->corners[t], sizeof places[t].corner);
+enum { PLACES = 1 << 14 }; ///< tetrahedra a job
+
+static void make_places(void *user, int32_t block, int thread) {
+    (void)thread;
+    flood *all = user;
+    const enf_tet_mesh *tets = &all->arrangement->tets;
+    int32_t begin = block * PLACES, left = tets->count - begin, end = begin + (left < PLACES ? left : PLACES);
+    for (int32_t t = begin; t < end; t++) {
+        place *here = &all->places[t];
+        memcpy(here->corner, tets->corners[t], sizeof here->corner);
         for (int k = 0; k < 4; k++) {
             const int32_t *sides = tets->facet_sides[tets->facets[t][k]];
-            places[t].next[k] = sides[0] == t ? sides[1] : sides[0];
+            here->next[k] = sides[0] == t ? sides[1] : sides[0];
         }
     }
-    return places;
 }
 
 /// Candidates by tetrahedron, in the order of the blocks.
@@ -395,15 +400,16 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
     int threads = crew->threads;
     int32_t block_count = (int32_t)((arrangement->mesh->polygon_count + BLOCK - 1) / BLOCK);
     const int32_t *order = candidates->order = sort_by_plane(arrangement);
-    place *places = make_places(&arrangement->tets);
     flood all = {.arrangement = arrangement,
                  .order = order,
-                 .places = places,
+                 .places = enf_array_new((size_t)arrangement->tets.count, sizeof *all.places),
                  .blocks = enf_array_zeroed((size_t)block_count, sizeof *all.blocks),
                  .flooders = enf_array_zeroed((size_t)threads, sizeof *all.flooders)};
-    bool good = order && places && all.blocks && all.flooders;
+    bool good = order && all.places && all.blocks && all.flooders;
     for (int w = 0; good && w < threads; w++) good = start_flooder(&all.flooders[w], arrangement);
     if (good) {
+        const enf_crew unwatched = {.threads = threads};
+        enf_parallel_for(&unwatched, arrangement->tets.count / PLACES + 1, make_places, &all);
         *stopped = !enf_parallel_for(crew, block_count, flood_job, &all);
         for (int w = 0; w < threads; w++) good = good && !all.flooders[w].failed;
         size_t tets = (size_t)arrangement->tets.count;
@@ -417,6 +423,6 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
     }
     free(all.blocks);
     free(all.flooders);
-    free(places);
+    free(all.places);
     return good;
 }

@@ -12,6 +12,8 @@
 /// begin and to put together than a second thread saves.
 enum { PART_WORK = 1 << 15 };
 
+enum { BLOCK = 1 << 14 }; ///< facets a job
+
 /// While the parts are made.
 typedef struct divider {
     const enf_arrangement *arrangement;
@@ -63,16 +65,28 @@ static int32_t owner(const divider *d, const int32_t sides[2]) {
     return cuts_of(d, sides[1]) || sides[0] < 0 ? sides[1] : sides[0];
 }
 
-/// Marks facets, groups tetrahedra and adds up their work.
+/// Marks the facets of a block.
+static void mark_block(void *user, int32_t block, int thread) {
+    (void)thread;
+    const divider *d = user;
+    const enf_tet_mesh *tets = &d->arrangement->tets;
+    int32_t begin = block * BLOCK, left = tets->facet_count - begin,
+            end = begin + (left < BLOCK ? left : BLOCK);
+    for (int32_t f = begin; f < end; f++) {
+        const int32_t *sides = tets->facet_sides[f];
+        d->parts->marked[f] = cuts_of(d, sides[0]) || cuts_of(d, sides[1]) || has_edge(d, f);
+    }
+}
+
+/// Groups tetrahedra and adds up their work.
 static void group_all(const divider *d) {
     const enf_tet_mesh *tets = &d->arrangement->tets;
     enf_sets_start(d->group, tets->count);
     for (int32_t f = 0; f < tets->facet_count; f++) {
+        if (!d->parts->marked[f]) continue;
         const int32_t *sides = tets->facet_sides[f];
-        bool behind = cuts_of(d, sides[0]), front = cuts_of(d, sides[1]);
-        if (behind && front) enf_sets_unite(d->group, sides[0], sides[1]);
-        d->parts->marked[f] = behind || front || has_edge(d, f);
-        if (d->parts->marked[f]) d->work[owner(d, sides)]++;
+        if (cuts_of(d, sides[0]) && cuts_of(d, sides[1])) enf_sets_unite(d->group, sides[0], sides[1]);
+        d->work[owner(d, sides)]++;
     }
     for (int32_t t = tets->count - 1; t >= 0; t--) { // the one that stands for its group comes last
         d->work[t] += cuts_of(d, t);
@@ -158,7 +172,9 @@ static bool list_facets(const divider *d) {
     return true;
 }
 
-bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const enf_candidates *candidates) {
+bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const enf_candidates *candidates,
+                    int threads) {
+    const enf_crew crew = {.threads = threads};
     size_t count = (size_t)arrangement->tets.count;
     memset(parts, 0, sizeof *parts);
     divider d = {.arrangement = arrangement, .candidates = candidates, .parts = parts};
@@ -169,6 +185,7 @@ bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const 
     parts->marked = enf_array_new((size_t)arrangement->tets.facet_count, sizeof *parts->marked);
     bool good = d.group && d.work && d.at && parts->cell_of && parts->marked;
     if (good) {
+        enf_parallel_for(&crew, arrangement->tets.facet_count / BLOCK + 1, mark_block, &d);
         group_all(&d);
         settle_parts(&d, fill_parts(&d));
         good = list_tetrahedra(&d) && list_facets(&d);

@@ -24,7 +24,8 @@ typedef struct enf_parts {
 } enf_parts;
 
 /// False without memory; free it in any case.
-bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const enf_candidates *candidates);
+bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const enf_candidates *candidates,
+                    int threads);
 void enf_parts_free(enf_parts *parts);
 
 enf_tet_part enf_parts_at(const enf_parts *parts, int32_t part);

@@ -456,7 +456,7 @@ static bool cut_parts(splitting *all) {
 
 /// The stage's second half, when the candidates are known.
 static bool split_parts(splitting *all, enf_complex *complex) {
-    if (!enf_parts_make(&all->parts, all->arrangement, &all->candidates)) return false;
+    if (!enf_parts_make(&all->parts, all->arrangement, &all->candidates, all->crew->threads)) return false;
     all->yields = enf_array_zeroed((size_t)all->parts.count, sizeof *all->yields);
     bool good =
         all->yields && enf_still_emit(&all->yields[0], all->arrangement, &all->parts, all->crew->threads);
