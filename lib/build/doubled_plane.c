@@ -106,7 +106,9 @@ bool enf_doubled_planes_meet(const enf_doubled_plane plane[3], const double orig
     for (int i = 0; i < 3; i++) {
         double quotient = at[i].high / weight.high;
         enf_doubled rest = subtract(at[i], multiply_by(weight, quotient));
-        point[i] = origin[i] - quotient - rest.high / weight.high;
+        enf_doubled place =
+            add((enf_doubled){origin[i], 0}, (enf_doubled){-quotient, -rest.high / weight.high});
+        point[i] = place.high; // one rounding: the same for other planes through the point
         farthest = fabs(quotient) > farthest ? fabs(quotient) : farthest;
     }
     // What `at` can be off, and the weight: the latter may be half of what it seems.

@@ -69,7 +69,10 @@ static int compare_votes(const void *a, const void *b) {
     return (x->difference > y->difference) - (x->difference < y->difference);
 }
 
-/// Is the point inside the convex loop, seen along the plane's longest axis?
+#define ROUNDED 4 ///< grid steps: more than rounding moves the ends of an edge, and the point, together
+
+/// Is the point inside the convex loop, seen along the plane's longest axis? What rounding may hide counts as
+/// inside: an edge of less than a step may point anywhere, and says nothing.
 static bool holds(const enf_complex *complex, const enf_corner *corners, int32_t count, const double point[3],
                   int axis) {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -77,24 +80,41 @@ static bool holds(const enf_complex *complex, const enf_corner *corners, int32_t
     for (int32_t i = 0; i < count; i++) {
         const double *p = complex->vertex_position[corners[i].vertex];
         const double *q = complex->vertex_position[corners[i + 1 < count ? i + 1 : 0].vertex];
-        double turn = (q[u] - p[u]) * (point[v] - p[v]) - (q[v] - p[v]) * (point[u] - p[u]);
-        left &= turn >= 0;
-        right &= turn <= 0;
+        double edge[2] = {q[u] - p[u], q[v] - p[v]}, away[2] = {point[u] - p[u], point[v] - p[v]};
+        double turn = edge[0] * away[1] - edge[1] * away[0];
+        double slack = ROUNDED * (fabs(edge[0]) + fabs(edge[1]) + fabs(away[0]) + fabs(away[1]));
+        left &= turn >= -slack;
+        right &= turn <= slack;
     }
     return left || right;
+}
+
+/// A point inside the piece that lies on no line of symmetry: other polygons often end on one (two triangles
+/// that halve a rectangle the other way meet in the middle of these), and all must say the same.
+static void skew_point(const enf_complex *complex, int32_t piece, double point[3]) {
+    int32_t count;
+    const enf_corner *corners = enf_complex_piece(complex, piece, &count);
+    double sum = 0;
+    point[0] = point[1] = point[2] = 0;
+    for (int32_t i = 0; i < count; i++) {
+        double golden = 0.6180339887498949 * (i + 1), weight = 1 + golden - floor(golden);
+        sum += weight;
+        for (int k = 0; k < 3; k++) point[k] += weight * complex->vertex_position[corners[i].vertex][k];
+    }
+    for (int k = 0; k < 3; k++) point[k] /= sum;
 }
 
 int32_t enf_complex_solids_behind(const enf_complex *complex, const enf_mesh *mesh, int32_t facet,
                                   int32_t piece, const double area[3]) {
     int32_t count = 0, first = complex->facet_cover[facet], end = complex->facet_cover[facet + 1];
-    double centre[3];
+    double inside[3];
     int axis = fabs(area[0]) > fabs(area[1]) ? (fabs(area[0]) > fabs(area[2]) ? 0 : 2)
                                              : (fabs(area[1]) > fabs(area[2]) ? 1 : 2);
-    if (end - first > 1) enf_complex_piece_centre(complex, piece, centre);
+    if (end - first > 1) skew_point(complex, piece, inside);
     for (int32_t c = first; c < end; c++) {
         int32_t corner_count;
         const enf_corner *corners = enf_complex_cover(complex, c, facet, &corner_count);
-        if (c != complex->piece_cover[piece] && !holds(complex, corners, corner_count, centre, axis))
+        if (c != complex->piece_cover[piece] && !holds(complex, corners, corner_count, inside, axis))
             continue;
         int32_t copies = mesh->polygon_copies[complex->cover_polygon[c]];
         count += complex->cover_side[c] == 1 ? copies : -copies;
