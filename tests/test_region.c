@@ -335,6 +335,43 @@ static void a_thin_layer_between_overlapping_polygons_is_no_opening(void **state
     }
 }
 
+/// A box of triangles; `turned` says which diagonal halves its sides.
+static void add_halved_box(enf_soup *soup, const double low[3], const double high[3], int turned) {
+    enf_soup whole = {0};
+    fixture_add_box(&whole, low, high, "box");
+    for (size_t p = 0; p < whole.polygon_count; p++) {
+        const int32_t *corner = whole.corner_point + whole.polygon_corner[p];
+        for (int half = 0; half < 2; half++) {
+            double at[3][3];
+            for (int k = 0; k < 3; k++) {
+                int32_t point = corner[(turned + 2 * half + k) % 4];
+                memcpy(at[k], whole.points + 3 * (size_t)point, sizeof at[k]);
+            }
+            fixture_add_polygon(soup, 3, (const double(*)[3])at, "box");
+        }
+    }
+    enf_soup_free(&whole);
+}
+
+/// The centre of each half of one side lies on the line between the two halves of the other.
+static void sides_in_common_may_be_halved_either_way(void **state) {
+    (void)state;
+    for (int first = 0; first < 2; first++) {
+        for (int second = 0; second < 2; second++) {
+            enf_soup soup = {0};
+            enf_build build;
+            add_room(&soup, (const double[]){0, 0, 0}, (const double[]){16, 16, 16});
+            add_halved_box(&soup, (const double[]){4, 4, 4}, (const double[]){8, 9, 10}, first);
+            add_halved_box(&soup, (const double[]){8, 4, 4}, (const double[]){11, 9, 10}, second);
+            build_soup(&build, &soup, ENF_KEEP_AUTO);
+            assert_int_equal(kind_of_volume(&build, 120), ENF_KIND_ROCK);
+            assert_int_equal(kind_of_volume(&build, 90), ENF_KIND_ROCK);
+            for (int32_t r = 0; r < build.regions.region_count; r++) assert_false(build.regions.ambiguous[r]);
+            enf_build_free(&build);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_inside_of_a_shell_is_air_and_its_furniture_rock),
@@ -350,6 +387,7 @@ int main(void) {
         cmocka_unit_test(a_closed_room_does_not_leak),
         cmocka_unit_test(a_crack_narrower_than_the_weld_distance_is_sealed),
         cmocka_unit_test(a_thin_layer_between_overlapping_polygons_is_no_opening),
+        cmocka_unit_test(sides_in_common_may_be_halved_either_way),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
