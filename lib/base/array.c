@@ -14,9 +14,8 @@ enum { HUGE_PAGE = 2 << 20, LARGE = 16 << 20 }; ///< bytes
 static void *prefer_huge_pages(void *data, size_t bytes) {
 #ifdef MADV_HUGEPAGE
     if (!data || bytes < LARGE) return data;
-    uintptr_t begin = ((uintptr_t)data + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE;
-    uintptr_t end = ((uintptr_t)data + bytes) / HUGE_PAGE * HUGE_PAGE;
-    madvise((void *)begin, end - begin, MADV_HUGEPAGE);
+    size_t before = (HUGE_PAGE - (uintptr_t)data % HUGE_PAGE) % HUGE_PAGE; // of the first whole page
+    madvise((char *)data + before, (bytes - before) / HUGE_PAGE * HUGE_PAGE, MADV_HUGEPAGE);
 #else
     (void)bytes;
 #endif

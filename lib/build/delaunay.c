@@ -75,6 +75,8 @@ static int orient(const triangulation *d, int32_t a, int32_t b, int32_t c, int32
 /// hull and the corner is at infinity, beyond the hull.
 static int side_of_face(const triangulation *d, const int32_t corner[4], int face, int32_t point) {
     const int *at = face_corners[face];
+    // The analyzer does not follow corners through memcpy into a grown array.
+    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.ArraySubscript)
     return orient(d, corner[at[0]], corner[at[1]], corner[at[2]], point);
 }
 
@@ -368,7 +370,7 @@ static void take_tetrahedra(triangulation *d, enf_tetrahedra *out) {
     for (size_t t = 0; t < d->count; t++) {
         if (is_finite(d->tets[t].corner)) memmove(corners[count++], d->tets[t].corner, sizeof *corners);
     }
-    void *trimmed = realloc(d->tets, count * sizeof *corners);
+    void *trimmed = realloc(d->tets, (count ? count : 1) * sizeof *corners);
     *out = (enf_tetrahedra){.corners = trimmed ? trimmed : d->tets, .count = count};
     d->tets = NULL;
 }
