@@ -49,7 +49,8 @@ static void progress_rises_within_each_stage(void **state) {
         assert_int_equal(build_watched(&w, threads, &error), ENF_OK);
         assert_true(w.orderly);
         assert_true(w.stages >= 6);
-        assert_true(w.calls > 2 * w.stages); // not only where stages begin
+        // Not only where stages begin; of several threads only the caller's own tells.
+        assert_true(w.calls > (threads == 1 ? 2 : 1) * w.stages);
     }
 }
 
