@@ -29,7 +29,7 @@ enum {
     TOTAL = STAGE + STAGES,
     TIME_RATIO,
     PEAK,
-    EXACT, ///< share of the predicates that the filter left to exact arithmetic
+    EXACT, ///< share of the predicates that only whole numbers could decide
     COLUMN_COUNT
 };
 
@@ -182,7 +182,7 @@ int cli_bench_cells(int argc, char **argv) {
             "Soup to coloured cells (clean, tetrahedralize, split, connect, colour) of every level in a\n"
             "folder, on one thread, in processor seconds, against CGAL's spatially sorted Delaunay\n"
             "triangulation of the same vertices. Peak memory is that of the whole process up to colour,\n"
-            "reading included; exact_share is of the predicates that the filter left to exact arithmetic. "
+            "reading included; exact_share is of the predicates that only whole numbers could decide. "
             "CSV;\n"
             "the last row has the medians and the largest peak.",
         .options = options,

@@ -300,7 +300,7 @@ int cli_bench_growth(int argc, char **argv) {
             "seconds\n"
             "of one thread, clock_s and split_clock_s go by the clock; exact_share is of the predicates "
             "that\n"
-            "the filter left to exact arithmetic. CSV; then, in words, how time grows with the polygons, "
+            "only whole numbers could decide. CSV; then, in words, how time grows with the polygons, "
             "and\n"
             "whether the bars are met.",
         .options = options};

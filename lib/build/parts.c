@@ -22,6 +22,7 @@ typedef struct divider {
     int32_t *group; ///< per tetrahedron: see base/sets.h
     int32_t *work;  ///< per tetrahedron: of the group that it stands for, and of facets that are left to it
     int32_t *at;    ///< per tetrahedron: the part of that work
+    int32_t *part;  ///< per tetrahedron: its own part
 } divider;
 
 void enf_parts_free(enf_parts *parts) {
@@ -121,7 +122,7 @@ static int32_t fill_parts(const divider *d) {
 static void settle_parts(const divider *d, int32_t heaviest) {
     for (int32_t t = 0; t < d->arrangement->tets.count; t++) {
         int32_t part = d->at[enf_sets_find(d->group, t)];
-        d->work[t] = part == heaviest ? 0 : part == 0 ? heaviest : part; // work has been done with
+        d->part[t] = part == heaviest ? 0 : part == 0 ? heaviest : part;
     }
 }
 
@@ -137,7 +138,7 @@ static bool list_tetrahedra(const divider *d) {
     parts->cuts = enf_array_zeroed((size_t)count, sizeof *parts->cuts);
     if (!first || !parts->cuts) return false;
     for (int32_t t = 0; t < tets; t++) {
-        if (cuts_of(d, t)) first[d->work[t] + 2]++;
+        if (cuts_of(d, t)) first[d->part[t] + 2]++;
     }
     add_up(first + 1, count);
     parts->tetrahedra = enf_array_new((size_t)first[count + 1], sizeof *parts->tetrahedra);
@@ -145,8 +146,8 @@ static bool list_tetrahedra(const divider *d) {
     for (int32_t t = 0; t < tets; t++) {
         parts->cell_of[t] = -1;
         if (!cuts_of(d, t)) continue;
-        parts->tetrahedra[first[d->work[t] + 1]++] = t;
-        parts->cuts[d->work[t]] += (size_t)cuts_of(d, t);
+        parts->tetrahedra[first[d->part[t] + 1]++] = t;
+        parts->cuts[d->part[t]] += (size_t)cuts_of(d, t);
     }
     for (int32_t part = 0; part < count; part++) {
         for (int32_t i = first[part]; i < first[part + 1]; i++)
@@ -161,13 +162,13 @@ static bool list_facets(const divider *d) {
     int32_t *first = parts->facet_first = enf_array_zeroed((size_t)parts->count + 2, sizeof *first);
     if (!first) return false;
     for (int32_t f = 0; f < tets->facet_count; f++) {
-        if (parts->marked[f]) first[d->work[owner(d, tets->facet_sides[f])] + 2]++;
+        if (parts->marked[f]) first[d->part[owner(d, tets->facet_sides[f])] + 2]++;
     }
     add_up(first + 1, parts->count);
     parts->facets = enf_array_new((size_t)first[parts->count + 1], sizeof *parts->facets);
     if (!parts->facets) return false;
     for (int32_t f = 0; f < tets->facet_count; f++) {
-        if (parts->marked[f]) parts->facets[first[d->work[owner(d, tets->facet_sides[f])] + 1]++] = f;
+        if (parts->marked[f]) parts->facets[first[d->part[owner(d, tets->facet_sides[f])] + 1]++] = f;
     }
     return true;
 }
@@ -181,9 +182,10 @@ bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const 
     d.group = enf_array_new(count, sizeof *d.group);
     d.work = enf_array_zeroed(count, sizeof *d.work);
     d.at = enf_array_new(count, sizeof *d.at);
+    d.part = enf_array_new(count, sizeof *d.part);
     parts->cell_of = enf_array_new(count, sizeof *parts->cell_of);
     parts->marked = enf_array_new((size_t)arrangement->tets.facet_count, sizeof *parts->marked);
-    bool good = d.group && d.work && d.at && parts->cell_of && parts->marked;
+    bool good = d.group && d.work && d.at && d.part && parts->cell_of && parts->marked;
     if (good) {
         enf_parallel_for(&crew, arrangement->tets.facet_count / BLOCK + 1, mark_block, &d);
         group_all(&d);
@@ -193,5 +195,6 @@ bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const 
     free(d.group);
     free(d.work);
     free(d.at);
+    free(d.part);
     return good;
 }

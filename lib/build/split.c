@@ -42,8 +42,8 @@ typedef struct splitting {
 typedef struct cutter {
     splitting *all;
     const enf_arrangement *arrangement;
-    enf_tet_part part;                   ///< at hand
-    enf_subdivision subdivision, *space; ///< the latter points to the former
+    enf_tet_part part; ///< at hand
+    enf_subdivision space;
     enf_settler settler;
     enf_polygon_lines lines;
     enf_hit *hits; ///< on the cuts of the cell at hand
@@ -71,14 +71,14 @@ static void add_hit(cutter *c, int32_t source) {
 
 /// The vertex where a cut edge meets the plane; false without memory.
 static bool cut_vertex(cutter *c, size_t i, int32_t *vertex) {
-    *vertex = enf_subdivision_cut_vertex(c->space, i);
+    *vertex = enf_subdivision_cut_vertex(&c->space, i);
     if (*vertex < 0) c->failed = true;
     return *vertex >= 0;
 }
 
 /// The same as below for one line of a polygon with very many.
 static bool line_lets_in(cutter *c, int32_t line) {
-    enf_subdivision *space = c->space;
+    enf_subdivision *space = &c->space;
     int32_t plane = c->lines.first_plane + line, vertex;
     for (size_t i = 0; i < space->cut_edge_count; i++) {
         if (!cut_vertex(c, i, &vertex)) return false;
@@ -93,7 +93,7 @@ static bool line_lets_in(cutter *c, int32_t line) {
 /// Does the polygon's inside meet the part of its plane that is in the cell, as far as the polygon's edges
 /// tell? It does not if a line has no corner of that part strictly inside.
 static bool lines_let_in(cutter *c) {
-    enf_subdivision *space = c->space;
+    enf_subdivision *space = &c->space;
     enf_geometry *geometry = &space->geometry;
     uint32_t wanted = c->lines.wanted, sure = 0, maybe = 0;
     size_t vertices =
@@ -126,16 +126,16 @@ static bool lines_let_in(cutter *c) {
 }
 
 static void leave_cell(cutter *c) {
-    for (size_t i = 0; i < c->space->cut_edge_count; i++) {
-        int32_t vertex = c->space->cut_edges[i].vertex;
+    for (size_t i = 0; i < c->space.cut_edge_count; i++) {
+        int32_t vertex = c->space.cut_edges[i].vertex;
         if (vertex >= 0 && (size_t)vertex < c->lines.known_capacity)
             enf_polygon_lines_forget(&c->lines, vertex);
     }
-    enf_subdivision_leave(c->space);
+    enf_subdivision_leave(&c->space);
 }
 
 static void cut_cell(cutter *c, int32_t cell) {
-    int crosses = enf_subdivision_crosses(c->space, cell);
+    int crosses = enf_subdivision_crosses(&c->space, cell);
     if (crosses < 0) c->failed = true;
     if (crosses <= 0) return;
     bool near = c->lines.wanted || c->lines.count > ENF_LINES_FEW;
@@ -143,7 +143,7 @@ static void cut_cell(cutter *c, int32_t cell) {
         leave_cell(c);
         return;
     }
-    int32_t node = enf_subdivision_cut(c->space, cell);
+    int32_t node = enf_subdivision_cut(&c->space, cell);
     if (node < 0) {
         c->failed = true;
     } else {
@@ -154,13 +154,13 @@ static void cut_cell(cutter *c, int32_t cell) {
 // ---------------------------------------------------------------------------------------------- one
 // tetrahedron
 
-static int corner_sides(const cutter *c, int32_t plane) {
+static int corner_sides(cutter *c, int32_t plane) {
     uint32_t hash = (uint32_t)c->lines.polygon * UINT32_C(0x9E3779B1) + (uint32_t)plane;
     polygon_sides *known = &c->known[(hash ^ hash >> 16) % SIDES_KNOWN];
     if (known->polygon == c->lines.polygon && known->plane == plane) return known->sides;
     int sides = 0;
     for (int32_t i = 0; i < c->lines.count && sides != 3; i++) {
-        int side = enf_geometry_side(&c->space->geometry, c->lines.corners[i], plane);
+        int side = enf_geometry_side(&c->space.geometry, c->lines.corners[i], plane);
         sides |= side < 0 ? 1 : side > 0 ? 2 : 0;
     }
     *known = (polygon_sides){c->lines.polygon, plane, sides};
@@ -169,7 +169,7 @@ static int corner_sides(const cutter *c, int32_t plane) {
 
 /// Down the tree of cuts to the cells that the polygon may enter.
 static void cut_tetrahedron(cutter *c, int32_t t) {
-    enf_subdivision *space = c->space;
+    enf_subdivision *space = &c->space;
     size_t depth = 0;
     if (!enf_array_reserve(c->refs, c->ref_capacity, 1)) c->failed = true;
     if (!c->failed) c->refs[depth++] = space->tetrahedron_root[t];
@@ -196,7 +196,7 @@ static void cut_tetrahedron(cutter *c, int32_t t) {
 
 /// Tetrahedra are joined first where that makes a convex cell: a polygon then cuts one cell, not several.
 static void join_tetrahedra(cutter *c) {
-    enf_subdivision *space = c->space;
+    enf_subdivision *space = &c->space;
     const int32_t *first = c->arrangement->hit_first; // facets that polygons lie on stay
     size_t count = space->facet_count;
     for (size_t f = 0; f < count; f++) {
@@ -312,7 +312,7 @@ static void narrow_lines(cutter *c, int32_t cell) {
     for (int32_t m = cell; m >= 0 && outside != c->lines.wanted; m = c->next[m]) {
         for (int k = 0; k < 4; k++) {
             int32_t point = c->arrangement->tets.corners[c->part.tetrahedra[m]][k];
-            outside |= enf_polygon_lines_at(&c->lines, &c->space->geometry, point)->outside;
+            outside |= enf_polygon_lines_at(&c->lines, &c->space.geometry, point)->outside;
         }
     }
     c->lines.wanted = outside;
@@ -320,7 +320,7 @@ static void narrow_lines(cutter *c, int32_t cell) {
 
 /// Cuts one cell by all its candidates, and settles what came of it.
 static void cut_by_all(cutter *c, size_t count, int32_t cell) {
-    enf_subdivision *space = c->space;
+    enf_subdivision *space = &c->space;
     enf_cut_cell cut = {
         .cell = cell, .first_cell = (int32_t)space->cell_count, .first_node = (int32_t)space->node_count};
     space->plane = -1;
@@ -364,20 +364,20 @@ static void cut_cells(cutter *c) {
         if (!c->failed) cut_by_all(c, polygons, m);
     }
     for (int32_t m = 0; m < count && !c->failed; m++) {
-        for (int32_t k = c->next[m]; k >= 0 && c->space->tetrahedron_root[m] >= 0; k = c->next[k])
-            c->space->tetrahedron_root[k] = c->space->tetrahedron_root[m];
+        for (int32_t k = c->next[m]; k >= 0 && c->space.tetrahedron_root[m] >= 0; k = c->next[k])
+            c->space.tetrahedron_root[k] = c->space.tetrahedron_root[m];
     }
 }
 
 /// What the joiner knows, and the subdivision's trees and vertices, become the part's.
 static bool finish_part(cutter *c, enf_yield *yield) {
     enf_joiner *joiner = &c->settler.joiner;
-    for (size_t cell = 0; cell < c->space->cell_count; cell++) enf_joiner_find(joiner, (int32_t)cell);
+    for (size_t cell = 0; cell < c->space.cell_count; cell++) enf_joiner_find(joiner, (int32_t)cell);
     int32_t *into = joiner->into;
     joiner->into = NULL;
     joiner->capacity = 0;
     yield->complex.cells_joined = joiner->count;
-    return enf_yield_finish(yield, c->space, into);
+    return enf_yield_finish(yield, &c->space, into);
 }
 
 static void cut_part(void *user, int32_t index, int thread) {
@@ -386,10 +386,10 @@ static void cut_part(void *user, int32_t index, int thread) {
     enf_yield *yield = &all->yields[index];
     c->part = enf_parts_at(&all->parts, index);
     bool good = !c->failed &&
-                enf_subdivision_start(c->space, &all->arrangement->geometry, &all->arrangement->tets,
+                enf_subdivision_start(&c->space, &all->arrangement->geometry, &all->arrangement->tets,
                                       &c->part, all->parts.cuts[index]) &&
                 enf_polygon_lines_reserve(&c->lines, all->arrangement->mesh->point_count) &&
-                enf_settler_start(&c->settler, all->arrangement, c->space, yield, all->reflex) &&
+                enf_settler_start(&c->settler, all->arrangement, &c->space, yield, all->reflex) &&
                 enf_settler_settle_still(&c->settler);
     if (good) {
         if (c->settler.join) join_tetrahedra(c);
@@ -417,7 +417,6 @@ static bool watch_half(void *user, double fraction) {
 static bool start_cutter(cutter *c, splitting *all, bool watched) {
     c->all = all;
     c->arrangement = all->arrangement;
-    c->space = &c->subdivision;
     c->watched = watched;
     c->known =
         enf_array_zeroed(SIDES_KNOWN, sizeof *c->known); // no polygon lies in plane 0: that is a facet's
@@ -426,7 +425,7 @@ static bool start_cutter(cutter *c, splitting *all, bool watched) {
 
 static void free_cutter(cutter *c) {
     enf_settler_free(&c->settler);
-    enf_subdivision_free(&c->subdivision);
+    enf_subdivision_free(&c->space);
     enf_polygon_lines_free(&c->lines);
     free(c->known);
     free(c->refs);

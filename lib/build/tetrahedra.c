@@ -95,7 +95,7 @@ static enf_status pair_faces(enf_tet_mesh *mesh, enf_error *error) {
             if (mesh->facet_sides[facet][side] >= 0) {
                 return enf_fail(
                     error, ENF_NO_RESOURCES,
-                    "the tetrahedralizer returned overlapping tetrahedra %d and %d; try the other one "
+                    "the tetrahedralizer returned overlapping tetrahedra %d and %d; try another one "
                     "(--tetrahedralizer)",
                     (int)mesh->facet_sides[facet][side], (int)t);
             }
@@ -115,8 +115,7 @@ static enf_status find_tetrahedra(enf_tet_mesh *mesh, enf_error *error) {
     for (int32_t i = 0; i < mesh->point_count; i++) {
         if (mesh->point_tetrahedron[i] >= 0) continue;
         return enf_fail(error, ENF_NO_RESOURCES,
-                        "the tetrahedralizer left out point %d; try the other one (--tetrahedralizer)",
-                        (int)i);
+                        "the tetrahedralizer left out point %d; try another one (--tetrahedralizer)", (int)i);
     }
     return ENF_OK;
 }
