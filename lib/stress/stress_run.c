@@ -10,6 +10,7 @@
 #include "build/write.h"
 #include "format/read.h"
 #include "format/save.h"
+#include "shim/shim.h"
 #include "stress/stress_family.h"
 
 #include <stdio.h>
@@ -150,6 +151,10 @@ void enf_stress_compile(enf_stress_case *made, const enf_build_options *options,
     result->polygons = (int32_t)build.mesh.polygon_count;
     result->tetrahedra = build.complex.tetrahedron_count;
     result->fine_cells = build.complex.cell_count;
+    size_t tetrahedra;
+    if (!status && harness->yardstick)
+        status = enf_shim_delaunay_time(build.mesh.points, build.mesh.point_count, &result->delaunay_seconds,
+                                        &tetrahedra, &error);
     made->soup = build.soup; // with what clean rejected
     if (harness->compiled) harness->compiled();
     if (!status)

@@ -24,6 +24,7 @@ typedef struct enf_stress_result {
     uint64_t peak_bytes;                      ///< most memory that the process had until then
     int64_t rejected;                         ///< polygons and lines that were left out
     double cell_seconds;                      ///< of that until decimate begins: clean to colour
+    double delaunay_seconds;                  ///< of CGAL's triangulation of the same vertices alone
     int32_t polygons, tetrahedra, fine_cells; ///< also of a run that did not finish, as far as it came
     enf_stress_verdict verdict;
 } enf_stress_result;
@@ -33,6 +34,7 @@ typedef struct enf_stress_options {
         *folder; ///< for the file, which is removed again; null: no file, the image in memory is checked
     int cells;   ///< > 0: odd seeds are decimated down to so many cells; otherwise --stop auto
     void (*compiled)(void); ///< called between the pipeline and the rest; may be null
+    bool yardstick;         ///< also time CGAL's Delaunay triangulation alone
     int points; ///< how many the oracles ask for in a run (and as many segments, a quarter of surfaces)
 } enf_stress_options;
 
