@@ -18,8 +18,21 @@ typedef struct enf_source {
     const char *end; ///< data + size
     int64_t line;    ///< 1-based line of the cursor
     bool continues;  ///< a backslash before the line's end joins it with the next line (OBJ)
+    bool brackets;   ///< a parenthesis ends a word (PRT)
     locale_t locale; ///< the "C" locale
+    char *owned;     ///< data, if the source has to free it
 } enf_source;
+
+/// Reads a whole file ("-": standard input), unpacks it if it is gzip, and puts the cursor at its start. The
+/// source keeps `path`. ENF_NO_RESOURCES if the file cannot be read, ENF_BAD_INPUT if the gzip data are
+/// damaged. Close it in any case.
+enf_status enf_source_open(enf_source *source, const char *path, enf_error *error);
+
+/// The same over bytes that stay the caller's; data[size] is a zero byte.
+enf_status enf_source_over(enf_source *source, const char *name, const char *data, size_t size,
+                           enf_error *error);
+
+void enf_source_close(enf_source *source);
 
 /// Skips blanks; true if something is left on the line.
 bool enf_source_more(enf_source *source);

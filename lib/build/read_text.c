@@ -37,6 +37,7 @@ static bool skip_joint(enf_source *source) {
 /// True if a word ends here.
 static bool word_ends(const enf_source *source, const char *at) {
     if (at >= source->end || is_blank(*at) || is_line_end(*at)) return true;
+    if (source->brackets && (*at == '(' || *at == ')')) return true;
     return source->continues && *at == '\\' && line_end_length(source, at + 1);
 }
 
