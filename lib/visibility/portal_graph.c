@@ -28,7 +28,9 @@ enf_status enf_portal_graph_finish(enf_portal_graph *graph, enf_error *error) {
     size_t portals = 2 * (size_t)graph->opening_count;
     graph->cell_portal = enf_array_zeroed((size_t)graph->cell_count + 1, sizeof *graph->cell_portal);
     graph->cell_portals = enf_array_new(portals, sizeof *graph->cell_portals);
-    if (!graph->cell_portal || !graph->cell_portals) return enf_fail_memory(error, "the portal graph");
+    if (!graph->opening_corner) graph->opening_corner = enf_array_zeroed(1, sizeof *graph->opening_corner);
+    if (!graph->cell_portal || !graph->cell_portals || !graph->opening_corner)
+        return enf_fail_memory(error, "the portal graph");
     for (int32_t p = 0; p < (int32_t)portals; p++) graph->cell_portal[enf_portal_from(graph, p) + 1]++;
     for (int32_t c = 0; c < graph->cell_count; c++) graph->cell_portal[c + 1] += graph->cell_portal[c];
     for (int32_t p = (int32_t)portals - 1; p >= 0; p--) // offsets move down to the starts while they are used

@@ -23,6 +23,9 @@ typedef struct enf_portal_graph {
     // Made by enf_portal_graph_finish.
     int32_t *cell_portal;  ///< cell_count + 1 offsets into cell_portals
     int32_t *cell_portals; ///< the directed portals that lead out of each cell, ascending
+
+    // Found by enf_portal_graph_find_non_convex.
+    int32_t non_convex_cells, first_non_convex_cell; ///< how many; the first of them, or -1
 } enf_portal_graph;
 
 static inline int32_t enf_portal_from(const enf_portal_graph *graph, int32_t portal) {
@@ -37,13 +40,22 @@ static inline int32_t enf_portal_to(const enf_portal_graph *graph, int32_t porta
 bool enf_portal_graph_add(enf_portal_graph *graph, int32_t from, int32_t to, const double (*corners)[3],
                           int32_t count);
 
-/// Once all openings are there: which portals leave which cell.
+/// Once all openings are there: which portals leave which cell. No array is null then.
 enf_status enf_portal_graph_finish(enf_portal_graph *graph, enf_error *error);
 
 void enf_portal_graph_free(enf_portal_graph *graph);
 
-/// Reads a .prt file (PRT1, PRT1-AM, PRT2; gzipped or not; "-": standard input) and finishes the graph.
-/// ENF_BAD_INPUT with file and line for whatever is not as the format says.
+/// False if a corner of one of the cell's portals lies on the wrong side of the plane of another, by more
+/// than enf_winding_tolerance of the two. A cell with portals on one side only may hide more from this.
+bool enf_portal_graph_is_convex(const enf_portal_graph *graph, int32_t cell);
+
+/// Counts the cells that are not convex in a finished graph. Line of sight inside of such a cell is not
+/// certain.
+void enf_portal_graph_find_non_convex(enf_portal_graph *graph);
+
+/// Reads a .prt file (PRT1, PRT1-AM, PRT2; gzipped or not; "-": standard input) and finishes the graph, which
+/// is overwritten. ENF_BAD_INPUT with file and line for whatever is not as the format says (read_prt.h), and
+/// ENF_NO_RESOURCES if the file cannot be read; the graph is empty then.
 enf_status enf_portal_graph_read(enf_portal_graph *graph, const char *path, enf_error *error);
 
 #endif
