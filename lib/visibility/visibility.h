@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which cell can see which: a ladder of methods from cheap to exact.
+#ifndef ENF_VISIBILITY_VISIBILITY_H
+#define ENF_VISIBILITY_VISIBILITY_H
+
+#include "visibility/portal_graph.h"
+#include "visibility/pvs.h"
+
+/// Each is applied on top of the ones before it, so each set contains the next. A cell is seen if
+typedef enum enf_method {
+    ENF_METHOD_REACH,     ///< it is connected through portals
+    ENF_METHOD_FACING,    ///< reached through portals that lie in front of the first and have it behind them
+    ENF_METHOD_HOURGLASS, ///< the separating planes of some portal sequence leave something of every portal
+    ENF_METHOD_LP,        ///< and the stabbing LP over the sequence's edges is feasible
+    ENF_METHOD_EXACT,     ///< and a real line goes through all its portals, in order along the line
+    ENF_METHOD_COUNT
+} enf_method;
+
+/// "reach" and so on, as on the command line.
+const char *enf_method_name(enf_method method);
+
+/// The method of that name; false if there is none.
+bool enf_method_find(const char *name, enf_method *method);
+
+/// A sight line from a point in one cell to a point in another.
+typedef struct enf_line {
+    double from[3], to[3];
+} enf_line;
+
+typedef struct enf_visibility_options {
+    enf_method method;
+    int threads; ///< at least 1; the result is the same for any number
+    bool want_witnesses;
+
+    /// May be null; false cancels. Called by the caller's own thread only.
+    bool (*progress)(void *user, const char *stage, double fraction);
+    void *progress_user;
+
+    double budget_seconds; ///< for the dear methods; what is not decided by then counts as seen; 0: none
+} enf_visibility_options;
+
+typedef struct enf_visibility {
+    enf_method method;
+    enf_pvs pvs; ///< symmetric
+
+    // If wanted: one for each unordered pair of cells that was proved visible.
+    enf_line *witnesses;         ///< witness_count; from the first cell of the pair to the second
+    int32_t (*witness_cells)[2]; ///< witness_count; i < j
+    int64_t witness_count;
+
+    int64_t portal_pairs, nodes, rays, lp_calls, exact_calls; ///< how much was looked at
+    int64_t cells_budgeted;                                   ///< cells for which the budget ran out
+    int32_t sequence_longest;                                 ///< portals
+    /// How many visible pairs had a shortest found sequence of that many portals; the last: so many or more.
+    int64_t sequence_lengths[64];
+    double seconds, cpu_seconds;
+} enf_visibility;
+
+/// Finds what every cell of a finished graph sees, into *visibility, which is overwritten. ENF_NO_RESOURCES
+/// without memory or when cancelled. Free it in any case.
+enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph *graph,
+                              const enf_visibility_options *options, enf_error *error);
+
+void enf_visibility_free(enf_visibility *visibility);
+
+#endif
