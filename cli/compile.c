@@ -3,6 +3,7 @@
 #include "base/timer.h"
 #include "build/write.h"
 #include "cli/cli.h"
+#include "cli/paths.h"
 #include "cli/report.h"
 #include "format/output.h"
 
@@ -20,27 +21,10 @@ typedef struct request {
     bool verbose, quiet;
 } request;
 
-/// True if two paths name the same file, or would.
-static bool is_same_file(const char *a, const char *b) {
-    struct stat at_a, at_b;
-    if (!a || !b) return false;
-    if (strcmp(a, b) == 0) return true;
-    if (stat(a, &at_a) != 0 || stat(b, &at_b) != 0) return false;
-    return S_ISREG(at_a.st_mode) && at_a.st_dev == at_b.st_dev && at_a.st_ino == at_b.st_ino;
-}
-
 /// No output may replace an input or another output.
 static const char *find_clash(const request *request) {
     const char *outputs[] = {request->output, request->report, request->leak};
-    for (int i = 0; i < 3; i++) {
-        for (int k = i + 1; k < 3; k++)
-            if (is_same_file(outputs[i], outputs[k])) return outputs[i];
-        for (size_t k = 0; k < request->inputs.count; k++)
-            if (strcmp(request->inputs.items[k], "-") != 0 &&
-                is_same_file(outputs[i], request->inputs.items[k]))
-                return outputs[i];
-    }
-    return NULL;
+    return cli_find_clash(&request->inputs, outputs, 3);
 }
 
 static bool ends_with(const char *text, const char *ending) {

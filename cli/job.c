@@ -19,14 +19,14 @@ const char *const cli_pvs_methods[] = {"none", "reach", "facing", "hourglass", "
 
 enum { THREADS_MAX = 64 };
 
-cli_settings cli_settings_default(void) {
+int cli_default_threads(void) {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    return (cli_settings){.stop = "auto",
-                          .weld = -1,
-                          .plane_tolerance = -1,
-                          .threads = cores < 1             ? 1
-                                     : cores > THREADS_MAX ? THREADS_MAX
-                                                           : (int)cores};
+    return cores < 1 ? 1 : cores > THREADS_MAX ? THREADS_MAX : (int)cores;
+}
+
+cli_settings cli_settings_default(void) {
+    return (cli_settings){
+        .stop = "auto", .weld = -1, .plane_tolerance = -1, .threads = cli_default_threads()};
 }
 
 void cli_settings_free(cli_settings *settings) {

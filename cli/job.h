@@ -19,6 +19,9 @@ typedef struct cli_settings {
 } cli_settings;
 
 cli_settings cli_settings_default(void);
+
+/// One per core, up to a limit.
+int cli_default_threads(void);
 void cli_settings_free(cli_settings *settings);
 
 extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const cli_keeps[],

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/pvs_report.h"
+
+#include "build/json.h"
+
+#include <inttypes.h>
+
+static void put_input(enf_json *json, const cli_pvs_result *result) {
+    char hash[24];
+    snprintf(hash, sizeof hash, "%016" PRIx64, result->input_hash);
+    enf_json_begin_object(json, "input");
+    enf_json_text(json, "file", result->input);
+    enf_json_text(json, "hash", hash);
+    enf_json_end_object(json);
+}
+
+/// Counts of sequences, up to the longest that there is.
+static void put_lengths(enf_json *json, const enf_visibility *visibility) {
+    int count = (int)(sizeof visibility->sequence_lengths / sizeof *visibility->sequence_lengths);
+    while (count > 0 && visibility->sequence_lengths[count - 1] == 0) count--;
+    enf_json_begin_array(json, "sequence_lengths");
+    json->one_line = true;
+    for (int i = 0; i < count; i++) enf_json_whole(json, NULL, visibility->sequence_lengths[i]);
+    enf_json_end_array(json);
+    json->one_line = false;
+}
+
+static void put_visibility(enf_json *json, const enf_visibility *visibility) {
+    enf_json_begin_object(json, "pvs");
+    enf_json_text(json, "method", enf_method_name(visibility->method));
+    enf_json_whole(json, "pairs", enf_pvs_pairs(&visibility->pvs));
+    enf_json_number(json, "mean_seen", enf_pvs_mean_seen(&visibility->pvs));
+    enf_json_whole(json, "witnesses", visibility->witness_count);
+    enf_json_whole(json, "portal_pairs", visibility->portal_pairs);
+    enf_json_whole(json, "nodes", visibility->nodes);
+    enf_json_whole(json, "rays", visibility->rays);
+    enf_json_whole(json, "lp_calls", visibility->lp_calls);
+    enf_json_whole(json, "exact_calls", visibility->exact_calls);
+    enf_json_whole(json, "cells_budgeted", visibility->cells_budgeted);
+    enf_json_whole(json, "sequence_longest", visibility->sequence_longest);
+    put_lengths(json, visibility);
+    enf_json_number(json, "seconds", visibility->seconds);
+    enf_json_number(json, "cpu_seconds", visibility->cpu_seconds);
+    enf_json_end_object(json);
+}
+
+static void put_options(enf_json *json, const enf_visibility_options *options) {
+    enf_json_begin_object(json, "options");
+    enf_json_text(json, "method", enf_method_name(options->method));
+    enf_json_bool(json, "witness", options->want_witnesses);
+    if (options->budget_seconds > 0)
+        enf_json_number(json, "budget", options->budget_seconds);
+    else
+        enf_json_null(json, "budget");
+    enf_json_end_object(json);
+}
+
+void cli_pvs_report_json(const cli_pvs_result *result, FILE *out) {
+    const enf_portal_graph *graph = &result->graph;
+    enf_json json = {.file = out};
+    enf_json_begin_object(&json, NULL);
+    enf_json_text(&json, "program", "enfilade " ENF_VERSION_TEXT);
+    put_input(&json, result);
+    enf_json_whole(&json, "leafs", graph->leaf_count ? graph->leaf_count : graph->cell_count);
+    enf_json_whole(&json, "cells", graph->cell_count);
+    enf_json_whole(&json, "portals", graph->opening_count);
+    enf_json_whole(&json, "non_convex_cells", graph->non_convex_cells);
+    put_visibility(&json, &result->visibility);
+    enf_json_number(&json, "seconds", result->seconds);
+    enf_json_whole(&json, "peak_bytes", (int64_t)result->peak_bytes);
+    enf_json_whole(&json, "threads", result->options.threads);
+    put_options(&json, &result->options);
+    enf_json_end_object(&json);
+    enf_json_finish(&json);
+}
+
+void cli_pvs_report_summary(const cli_pvs_result *result, const char *output, FILE *out) {
+    const enf_visibility *visibility = &result->visibility;
+    fprintf(out,
+            "%s: %" PRId32 " cells, %" PRId32 " portals; by %s %" PRId64
+            " pairs, a cell sees %.1f on average; %.2f s, %.0f MB\n",
+            output, result->graph.cell_count, result->graph.opening_count,
+            enf_method_name(visibility->method), enf_pvs_pairs(&visibility->pvs),
+            enf_pvs_mean_seen(&visibility->pvs), result->seconds, (double)result->peak_bytes / 1e6);
+    if (visibility->cells_budgeted > 0)
+        fprintf(out,
+                "the budget of %g s ran out for %" PRId64
+                " cells: what they might see counts as seen; a larger --budget tells more\n",
+                result->options.budget_seconds, visibility->cells_budgeted);
+}
+
+void cli_pvs_report_verbose(const cli_pvs_result *result, FILE *out) {
+    const enf_visibility *visibility = &result->visibility;
+    fprintf(out,
+            "visibility     %8.3f s (%.3f s of %d processors' time); %" PRId64 " portal pairs, %" PRId64
+            " nodes, %" PRId64 " rays, %" PRId64 " LPs, %" PRId64 " exact; longest sequence %" PRId32
+            " portals\n",
+            visibility->seconds, visibility->cpu_seconds, result->options.threads, visibility->portal_pairs,
+            visibility->nodes, visibility->rays, visibility->lp_calls, visibility->exact_calls,
+            visibility->sequence_longest);
+    if (result->options.want_witnesses)
+        fprintf(out, "witnesses      %8" PRId64 "\n", visibility->witness_count);
+}
