@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rung `facing`: which portals a sight line through a portal could pass later, going by planes alone.
+#ifndef ENF_VISIBILITY_FACING_H
+#define ENF_VISIBILITY_FACING_H
+
+#include "base/parallel.h"
+#include "visibility/bits.h"
+#include "visibility/shapes.h"
+
+/// Bit q of row p: portal q can be reached from portal p through portals that are all in front of p and have
+/// p behind them, each in front of the one before it. Symmetric: q is in p's row exactly if the twin of p is
+/// in the row of the twin of q. *facing is made; free it in any case.
+enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, const enf_crew *crew,
+                           enf_error *error);
+
+/// Clears every bit q of row p without bit twin(p) of row twin(q).
+void enf_facing_symmetrise(enf_bits *bits);
+
+#endif

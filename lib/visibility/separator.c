@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "visibility/separator.h"
+
+#include <math.h>
+
+typedef struct tangent {
+    double normal[3]; ///< length 1
+    double tilt;      ///< how far the plane may move, anywhere in the world, if its corners move by 1
+} tangent;
+
+/// The plane through the edge from a to b that touches the window, which is on its front side: of the planes
+/// through the edge and a corner, the one that has no other corner behind it.
+static bool find_tangent(const double a[3], const double b[3], const enf_window *window, double extent,
+                         tangent *tangent) {
+    double edge[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, normal[3] = {0}, arm = 0;
+    for (int32_t i = 0; i < window->count; i++) {
+        const double *corner = window->corners[i];
+        double way[3] = {corner[0] - a[0], corner[1] - a[1], corner[2] - a[2]};
+        if (i > 0 && enf_dot(normal, way) >= 0) continue;
+        normal[0] = edge[1] * way[2] - edge[2] * way[1];
+        normal[1] = edge[2] * way[0] - edge[0] * way[2];
+        normal[2] = edge[0] * way[1] - edge[1] * way[0];
+        arm = fabs(way[0]) + fabs(way[1]) + fabs(way[2]);
+    }
+    arm += fabs(edge[0]) + fabs(edge[1]) + fabs(edge[2]);
+    double square = enf_dot(normal, normal), inverse = 1 / sqrt(square);
+    if (!(square > 0) || !(inverse < HUGE_VAL)) return false;
+    for (int axis = 0; axis < 3; axis++) tangent->normal[axis] = normal[axis] * inverse;
+    tangent->tilt = 2 + 2 * arm * extent * inverse;
+    return true;
+}
+
+static double highest(const enf_window *window, const double normal[3]) {
+    double height = enf_dot(normal, window->corners[0]);
+    for (int32_t i = 1; i < window->count; i++) height = fmax(height, enf_dot(normal, window->corners[i]));
+    return height;
+}
+
+static double lowest(const enf_window *window, const double normal[3]) {
+    double height = enf_dot(normal, window->corners[0]);
+    for (int32_t i = 1; i < window->count; i++) height = fmin(height, enf_dot(normal, window->corners[i]));
+    return height;
+}
+
+/// Through the edges of `one`, which turns counter-clockwise against the sight if `turns`. Of the two windows
+/// `one` is behind the planes and `other` in front; if sight goes from other to one, they are turned round.
+static void add_planes(enf_separators *separators, const enf_shapes *shapes, const enf_window *one,
+                       const enf_window *other, bool turns, bool forward) {
+    for (int32_t i = 0; i < one->count && separators->count < ENF_SEPARATORS_MOST; i++) {
+        int32_t next = i + 1 < one->count ? i + 1 : 0;
+        const double *a = one->corners[turns ? i : next], *b = one->corners[turns ? next : i];
+        tangent tangent;
+        if (!find_tangent(a, b, other, shapes->extent, &tangent)) continue;
+        double behind = highest(one, tangent.normal), front = lowest(other, tangent.normal);
+        double slack = shapes->tolerance * tangent.tilt;
+        if (behind > front + shapes->tolerance || slack > shapes->extent) continue;
+        enf_cut *cut = &separators->cuts[separators->count++];
+        for (int axis = 0; axis < 3; axis++)
+            cut->normal[axis] = forward ? tangent.normal[axis] : -tangent.normal[axis];
+        cut->offset = forward ? front : -behind;
+        cut->slack = slack;
+    }
+}
+
+void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
+                         int32_t from_portal, const enf_window *to, int32_t to_portal) {
+    separators->count = 0;
+    add_planes(separators, shapes, from, to, !(from_portal & 1), true);
+    add_planes(separators, shapes, to, from, to_portal & 1, false);
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What traversal needs of each opening, made once and read by all threads: plane, outline, sphere.
+#ifndef ENF_VISIBILITY_SHAPES_H
+#define ENF_VISIBILITY_SHAPES_H
+
+#include "visibility/portal_graph.h"
+#include "visibility/window.h"
+
+typedef struct enf_shape {
+    double normal[3], offset;  ///< the plane of portal 2k, normal of length 1
+    double centre[3], radius;  ///< a sphere around the corners
+    int32_t first, count;      ///< of its corners in outlines
+    int32_t axes[2];           ///< seen along the third axis (from its far end) it turns counter-clockwise
+} enf_shape;
+
+typedef struct enf_shapes {
+    const enf_portal_graph *graph; ///< not owned
+    enf_shape *shapes;             ///< per opening
+    double (*outlines)[3];         ///< of windings with over 64 corners, a rectangle around them
+    bool *cell_is_convex;          ///< per cell
+
+    // World units, both.
+    double tolerance; ///< of windows and planes: 2^-36 of the largest coordinate, and how far windings are
+                      ///< from planar; a power of two times that of a world of another scale
+    double extent;    ///< no two corners are farther apart
+} enf_shapes;
+
+/// False without memory; free it in any case.
+bool enf_shapes_make(enf_shapes *shapes, const enf_portal_graph *graph);
+void enf_shapes_free(enf_shapes *shapes);
+
+static inline const double (*enf_shape_outline(const enf_shapes *shapes, int32_t opening))[3] {
+    return (const double(*)[3])shapes->outlines + shapes->shapes[opening].first;
+}
+
+/// The height of a point above the plane of a directed portal: positive beyond it.
+static inline double enf_shape_height(const enf_shapes *shapes, int32_t portal, const double point[3]) {
+    const enf_shape *shape = &shapes->shapes[portal >> 1];
+    double height = enf_dot(shape->normal, point) - shape->offset;
+    return portal & 1 ? -height : height;
+}
+
+/// The cut that keeps what lies beyond a directed portal.
+enf_cut enf_shape_cut(const enf_shapes *shapes, int32_t portal);
+
+#endif
