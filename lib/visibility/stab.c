@@ -14,6 +14,7 @@ enf_stabber *enf_stabber_new(const enf_pluecker *pluecker) {
     if (!stabber) return NULL;
     stabber->pluecker = pluecker;
     for (int i = 0; i < ENF_PLUECKER; i++) mpz_init(stabber->point[i]);
+    enf_quadric_init(&stabber->quadric);
     return stabber;
 }
 
@@ -23,6 +24,7 @@ void enf_stabber_free(enf_stabber *stabber) {
         for (int i = 0; i < ENF_PLUECKER; i++) mpz_clear(stabber->whole[k][i]);
     }
     for (int i = 0; i < ENF_PLUECKER; i++) mpz_clear(stabber->point[i]);
+    enf_quadric_free(&stabber->quadric);
     free(stabber->whole);
     free(stabber->order);
     free(stabber->sources);
@@ -33,23 +35,6 @@ void enf_stabber_free(enf_stabber *stabber) {
 
 const enf_stab_counts *enf_stabber_counts(const enf_stabber *stabber) {
     return &stabber->counts;
-}
-
-/// The tightest edges first, if doubles say anything.
-static bool choose_order(enf_stabber *stabber) {
-    const int32_t count = stabber->edge_count;
-    const double *x = stabber->hull.x;
-    free(stabber->order);
-    stabber->order = enf_array_new((size_t)count, sizeof *stabber->order);
-    if (!stabber->order) return false;
-    enf_min_norm_least(stabber->vectors, count, stabber->capacity, x, stabber->products);
-    for (int32_t k = 0; k < count; k++) {
-        int32_t place = k;
-        for (; place > 0 && stabber->products[k] < stabber->products[stabber->order[place - 1]]; place--)
-            stabber->order[place] = stabber->order[place - 1];
-        stabber->order[place] = k;
-    }
-    return true;
 }
 
 /// Is there a strict solution? Then hull.x is one, or `point`.
@@ -71,7 +56,7 @@ static enf_status decide_program(enf_stabber *stabber, const enf_line *start, bo
         stabber->counts.zero_by_whole++;
     } else {
         stabber->counts.programs++;
-        if (!choose_order(stabber) || !enf_stabber_whole_edges(stabber))
+        if (!enf_stabber_order(stabber) || !enf_stabber_whole_edges(stabber))
             return enf_fail_memory(error, "a portal sequence's edges");
         *feasible = !enf_stabber_program(stabber);
     }

@@ -27,9 +27,11 @@ typedef struct enf_stab_counts {
     int64_t zero_by_double; ///< hidden: 0 is in a hull, shown by doubles
     int64_t zero_by_whole;  ///< the same, shown by whole numbers
     int64_t programs;       ///< linear programs in whole numbers
+    int64_t pivots;         ///< of these
     int64_t searched;       ///< lines that took a search
     int64_t quadrics;       ///< decisions about the cone and the quadric in whole numbers
     int64_t quadrics_hidden;
+    int64_t undecided;     ///< of those, cones of more than 512 sides, taken for visible
     int64_t lines_missing; ///< visible, but no line of doubles was found
 } enf_stab_counts;
 

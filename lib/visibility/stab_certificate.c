@@ -127,14 +127,24 @@ static bool weights_have_one_sign(const system *s) {
     return true;
 }
 
+/// The members that are needed: what weighs next to nothing is there by rounding.
+static int chosen_members(const enf_min_norm *hull, int32_t chosen[ENF_HULL_MAX]) {
+    int count = 0;
+    for (int n = 0; n < hull->size; n++) {
+        if (hull->weight[n] > 1e-9) chosen[count++] = hull->member[n];
+    }
+    return count;
+}
+
 bool enf_stabber_zero_by_whole(const enf_stabber *stabber) {
-    system s = {.size = stabber->hull.size};
+    int32_t chosen[ENF_HULL_MAX];
+    system s = {.size = chosen_members(&stabber->hull, chosen)};
     mpz_t vector[ENF_PLUECKER];
     if (s.size < 2) return false;
     mpz_inits(s.divisor, s.term, NULL);
     for (int i = 0; i < ENF_PLUECKER; i++) mpz_init(vector[i]);
     for (int n = 0; n < s.size; n++) {
-        enf_stabber_whole_edge(stabber, stabber->hull.member[n], vector);
+        enf_stabber_whole_edge(stabber, chosen[n], vector);
         for (int i = 0; i < ENF_PLUECKER; i++) mpz_init_set(s.entry[i][n], vector[i]);
     }
     eliminate(&s);

@@ -131,3 +131,20 @@ bool enf_stabber_whole_edges(enf_stabber *stabber) {
     stabber->whole_ready = true;
     return true;
 }
+
+bool enf_stabber_order(enf_stabber *stabber) {
+    const int32_t count = stabber->edge_count;
+    const double *x = stabber->hull.x;
+    free(stabber->order);
+    stabber->order = enf_array_new((size_t)count, sizeof *stabber->order);
+    if (!stabber->order) return false;
+    enf_min_norm_least(stabber->vectors, count, stabber->capacity, x, stabber->products);
+    for (int i = 0; i < stabber->hull.size; i++) stabber->products[stabber->hull.member[i]] -= HUGE_VAL;
+    for (int32_t k = 0; k < count; k++) {
+        int32_t place = k;
+        for (; place > 0 && stabber->products[k] < stabber->products[stabber->order[place - 1]]; place--)
+            stabber->order[place] = stabber->order[place - 1];
+        stabber->order[place] = k;
+    }
+    return true;
+}

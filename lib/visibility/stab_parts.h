@@ -6,10 +6,7 @@
 
 #include "visibility/min_norm.h"
 #include "visibility/stab.h"
-
-#include <gmp.h>
-
-typedef mpz_t enf_whole_vector[ENF_PLUECKER];
+#include "visibility/stab_quadric.h"
 
 struct enf_stabber {
     const enf_pluecker *pluecker;
@@ -36,6 +33,7 @@ struct enf_stabber {
     int32_t *order;
     enf_whole_vector point; ///< a solution of the whole-number program
     bool point_is_whole;    ///< the solution is `point`, not hull.x
+    enf_quadric quadric;
 };
 
 /// Each computed vector, about as long as 1, is off by less than 2^-48: a few roundings of coordinates
@@ -50,6 +48,9 @@ bool enf_stabber_take(enf_stabber *stabber, const int32_t *sequence, int32_t cou
 void enf_stabber_whole_edge(const enf_stabber *stabber, int32_t k, mpz_t *vector);
 /// All of them, into stabber->whole; false without memory.
 bool enf_stabber_whole_edges(enf_stabber *stabber);
+
+/// stabber->order: the members of the hull, then the tightest edges at hull.x first. False without memory.
+bool enf_stabber_order(enf_stabber *stabber);
 
 // ---- stab_certificate.c
 /// Do the members of the hull hold 0, whatever was rounded? False if doubles cannot tell.
@@ -74,7 +75,7 @@ bool enf_stabber_search(enf_stabber *stabber, enf_line *line);
 /// Does it pass all portals? Exact.
 bool enf_stabber_passes(const enf_stabber *stabber, const enf_line *line);
 
-// ---- stab_quadric.c
+// ---- stab_cone.c
 /// Exactly, from the strict solution: does the open cone meet the quadric? Leaves in hull.x something next to
 /// where it does.
 enf_status enf_stabber_quadric(enf_stabber *stabber, bool *meets, enf_error *error);

@@ -101,6 +101,7 @@ bool enf_stabber_program(enf_stabber *stabber) {
         pivot(&p, row);
         p.basis[row] = k;
         set_prices(&p, stabber->edge_count);
+        stabber->counts.pivots++;
     }
     // Above 0, what is left of the artificial variables: prices separate all vectors from 0.
     const bool zero = mpz_sgn(p.price[RIGHT]) == 0;
