@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <set>
 #include <vector>
 
@@ -34,13 +35,8 @@ rational dot(const point &a, const point &b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-integer gcd(integer a, integer b) {
-    while (b != 0) {
-        integer rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a < 0 ? -a : a;
+integer gcd(const integer &a, const integer &b) {
+    return CGAL::Algebraic_structure_traits<integer>::Gcd()(a, b);
 }
 
 void shorten(vector &v) {
@@ -135,41 +131,56 @@ vector across(const std::vector<vector> &rows, size_t left_out) {
     return out;
 }
 
-// The extreme rays of a pointed cone with an inside.
+using tight_set = std::bitset<512>;
+
+tight_set tight_of(const vector &ray, const std::vector<vector> &constraints) {
+    tight_set tight;
+    for (size_t k = 0; k < constraints.size(); k++) tight[k] = product_of(ray, constraints[k]) == 0;
+    return tight;
+}
+
+size_t rank_of(const tight_set &tight, const std::vector<vector> &constraints) {
+    std::vector<vector> rows;
+    for (size_t k = 0; k < constraints.size(); k++) {
+        if (tight[k]) rows.push_back(constraints[k]);
+    }
+    return rank_of(rows);
+}
+
+// The extreme rays of a pointed cone: each lies in five independent constraints. Whatever joins two of them
+// lies in four at least.
 std::vector<vector> rays_of(const std::vector<vector> &constraints) {
-    std::vector<vector> basis, rest, used;
-    for (const vector &c : constraints) {
-        basis.push_back(c);
-        if (basis.size() <= 6 && rank_of(basis) == basis.size()) continue;
-        basis.pop_back();
+    std::vector<vector> used, rest;
+    for (const vector &c : std::set<vector>(constraints.begin(), constraints.end())) {
+        used.push_back(c);
+        if (used.size() <= 6 && rank_of(used) == used.size()) continue;
+        used.pop_back();
         rest.push_back(c);
     }
-    std::set<vector> rays;
-    for (size_t i = 0; i < 6; i++) rays.insert(across(basis, i));
-    used = basis;
+    std::vector<vector> rays;
+    for (size_t i = 0; i < 6; i++) rays.push_back(across(used, i));
     for (const vector &c : rest) {
-        std::set<vector> next;
-        used.push_back(c);
+        std::vector<tight_set> tight;
+        std::vector<integer> value;
         for (const vector &r : rays) {
-            if (product_of(r, c) >= 0) next.insert(r);
+            tight.push_back(tight_of(r, used));
+            value.push_back(product_of(r, c));
         }
-        for (const vector &r : rays) {
-            for (const vector &s : rays) {
-                const integer in = product_of(r, c), out = product_of(s, c);
-                if (in <= 0 || out >= 0) continue;
+        used.push_back(c);
+        std::set<vector> next;
+        for (size_t r = 0; r < rays.size(); r++) {
+            if (value[r] >= 0) next.insert(rays[r]);
+            for (size_t s = 0; value[r] > 0 && s < rays.size(); s++) {
+                if (value[s] >= 0 || (tight[r] & tight[s]).count() < 4) continue;
                 vector meeting;
-                for (size_t i = 0; i < 6; i++) meeting[i] = in * s[i] - out * r[i];
+                for (size_t i = 0; i < 6; i++) meeting[i] = value[r] * rays[s][i] - value[s] * rays[r][i];
                 shorten(meeting);
-                std::vector<vector> tight;
-                for (const vector &u : used) {
-                    if (product_of(meeting, u) == 0) tight.push_back(u);
-                }
-                if (tight.size() >= 5 && rank_of(tight) == 5) next.insert(meeting);
+                if (rank_of(tight_of(meeting, used), used) == 5) next.insert(meeting);
             }
         }
-        rays = next;
+        rays.assign(next.begin(), next.end());
     }
-    return {rays.begin(), rays.end()};
+    return rays;
 }
 
 using matrix = std::vector<std::vector<integer>>;
