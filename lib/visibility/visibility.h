@@ -3,6 +3,7 @@
 #ifndef ENF_VISIBILITY_VISIBILITY_H
 #define ENF_VISIBILITY_VISIBILITY_H
 
+#include "visibility/line.h"
 #include "visibility/portal_graph.h"
 #include "visibility/pvs.h"
 
@@ -21,11 +22,6 @@ const char *enf_method_name(enf_method method);
 
 /// The method of that name; false if there is none.
 bool enf_method_find(const char *name, enf_method *method);
-
-/// A sight line from a point in one cell to a point in another.
-typedef struct enf_line {
-    double from[3], to[3];
-} enf_line;
 
 typedef struct enf_visibility_options {
     enf_method method;

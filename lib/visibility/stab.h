@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Does a line stab a portal sequence, that is, pass all its portals? Decided exactly, in two senses: by the
+// linear relaxation (S. J. Teller and C. H. Sequin, "Visibility preprocessing for interactive walkthroughs",
+// 1991), where any x in R^6 with <x, e> > 0 for all edges will do, line or not; and by real lines, which are
+// those x that lie on the Pluecker quadric. Order along the line is not asked for: between convex cells it
+// comes by itself.
+#ifndef ENF_VISIBILITY_STAB_H
+#define ENF_VISIBILITY_STAB_H
+
+#include "visibility/line.h"
+#include "visibility/pluecker.h"
+
+typedef enum enf_stab_answer {
+    ENF_STAB_HIDDEN,  ///< nothing stabs the sequence
+    ENF_STAB_VISIBLE, ///< a real line does
+    ENF_STAB_OPEN,    ///< the relaxation has a solution; whether a line does was not decided
+} enf_stab_answer;
+
+typedef struct enf_stab {
+    enf_stab_answer answer;
+    bool has_line; ///< never if HIDDEN; not always if VISIBLE, where lines may exist between all doubles only
+    enf_line line; ///< if has_line: enf_line_passes says yes for all portals
+} enf_stab;
+
+typedef struct enf_stab_counts {
+    int64_t calls, hints;   ///< calls; those that the hint answered
+    int64_t zero_by_double; ///< hidden: 0 is in a hull, shown by doubles
+    int64_t zero_by_whole;  ///< the same, shown by whole numbers
+    int64_t programs;       ///< linear programs in whole numbers
+    int64_t pivots;         ///< of these
+    int64_t searched;       ///< lines that took a search
+    int64_t quadrics;       ///< decisions about the cone and the quadric in whole numbers
+    int64_t quadrics_hidden;
+    int64_t undecided;     ///< of those, cones of more than 512 sides, taken for visible
+    int64_t lines_missing; ///< visible, but no line of doubles was found
+} enf_stab_counts;
+
+/// Scratch memory and counters of one thread.
+typedef struct enf_stabber enf_stabber;
+
+/// Null without memory. The edges are shared and must stay.
+enf_stabber *enf_stabber_new(const enf_pluecker *pluecker);
+void enf_stabber_free(enf_stabber *stabber);
+const enf_stab_counts *enf_stabber_counts(const enf_stabber *stabber);
+
+/// The linear relaxation alone: HIDDEN, or OPEN, or VISIBLE if a line turned up on the way. A sequence has 1
+/// or more directed portals. The hint may be null: a line to try first, whose last portals are the least
+/// sure.
+enf_status enf_stab_lp(enf_stabber *stabber, const int32_t *sequence, int32_t count, const enf_line *hint,
+                       enf_stab *stab, enf_error *error);
+
+/// Real lines: HIDDEN or VISIBLE.
+enf_status enf_stab_exact(enf_stabber *stabber, const int32_t *sequence, int32_t count, const enf_line *hint,
+                          enf_stab *stab, enf_error *error);
+
+#endif

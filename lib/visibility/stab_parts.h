@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of stabbing share. Vectors act on x = (direction, moment) as e = (moment, direction), so
+// that both are met by the plain inner product in R^6.
+#ifndef ENF_VISIBILITY_STAB_PARTS_H
+#define ENF_VISIBILITY_STAB_PARTS_H
+
+#include "visibility/min_norm.h"
+#include "visibility/stab.h"
+#include "visibility/stab_quadric.h"
+
+struct enf_stabber {
+    const enf_pluecker *pluecker;
+    enf_stab_counts counts;
+
+    // The sequence at hand.
+    const int32_t *sequence;
+    int32_t count;
+    double origin[3]; ///< a corner: coordinates below are as seen from it
+    double scale;     ///< a power of two: times it, no coordinate is above 1
+    bool rough;       ///< the doubles below say nothing
+    int unit;         ///< all corners are multiples of 2^unit
+
+    int32_t edge_count, capacity;
+    int32_t *sources; ///< 2 * edge of the openings, + 1 if turned round
+    double *vectors;  ///< in columns, capacity apart, with room for one more than edge_count
+    double *products;
+    enf_min_norm hull;
+
+    // Whole numbers: (a - origin) x (b - a) and b - a in units.
+    enf_whole_vector *whole; ///< whole_count of them are initialised; valid if whole_ready
+    int32_t whole_count;
+    bool whole_ready;
+    int32_t *order;
+    enf_whole_vector point; ///< a solution of the whole-number program
+    bool point_is_whole;    ///< the solution is `point`, not hull.x
+    enf_quadric quadric;
+};
+
+/// Each computed vector, about as long as 1, is off by less than 2^-48: a few roundings of coordinates
+/// below 1. Inner products with x are off by less than ENF_STAB_MARGIN * |x|, their own roundings included.
+#define ENF_STAB_ERROR 0x1p-48
+#define ENF_STAB_MARGIN 0x1p-47
+
+// ---- stab_edges.c
+/// Collects the edges of the sequence; false without memory.
+bool enf_stabber_take(enf_stabber *stabber, const int32_t *sequence, int32_t count);
+/// Edge vector k in whole numbers, into six initialised numbers.
+void enf_stabber_whole_edge(const enf_stabber *stabber, int32_t k, mpz_t *vector);
+/// All of them, into stabber->whole; false without memory.
+bool enf_stabber_whole_edges(enf_stabber *stabber);
+
+/// stabber->order: the members of the hull, then the tightest edges at hull.x first. False without memory.
+bool enf_stabber_order(enf_stabber *stabber);
+
+// ---- stab_certificate.c
+/// Do the members of the hull hold 0, whatever was rounded? False if doubles cannot tell.
+bool enf_stabber_zero_by_double(const enf_stabber *stabber);
+/// Does a combination of the members with weights >= 0 give 0? Exact, but false as well if there are two.
+bool enf_stabber_zero_by_whole(const enf_stabber *stabber);
+
+// ---- stab_program.c
+/// Exactly: is 0 in the hull of all edges? If not, stabber->point is a strict solution. Edges are looked at
+/// in stabber->order.
+bool enf_stabber_program(enf_stabber *stabber);
+
+// ---- stab_line.c
+/// The line of x (which need not lie on the quadric: next to it), or false if there is none worth trying.
+bool enf_stabber_line(const enf_stabber *stabber, const double x[ENF_PLUECKER], enf_line *line);
+/// x of the line.
+void enf_stabber_coordinates(const enf_stabber *stabber, const enf_line *line, double x[ENF_PLUECKER]);
+/// A line that may pass: from the first portal's middle to the last one's.
+enf_line enf_stabber_guess(const enf_stabber *stabber);
+/// Searches from the strict solution hull.x for a line that passes all portals.
+bool enf_stabber_search(enf_stabber *stabber, enf_line *line);
+/// Does it pass all portals? Exact.
+bool enf_stabber_passes(const enf_stabber *stabber, const enf_line *line);
+
+// ---- stab_cone.c
+/// Exactly, from the strict solution: does the open cone meet the quadric? Leaves in hull.x something next to
+/// where it does.
+enf_status enf_stabber_quadric(enf_stabber *stabber, bool *meets, enf_error *error);
+
+#endif

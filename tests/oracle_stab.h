@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The oracle for stabbing: CGAL's numbers, CGAL's linear programs, and a decision about real lines that goes
+// another way than the library's. It shares no code with the library.
+#ifndef ENF_TESTS_ORACLE_STAB_H
+#define ENF_TESTS_ORACLE_STAB_H
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// An edge a line must pass so that det(to - from, a - from, b - from) > 0.
+typedef struct oracle_edge {
+    double a[3], b[3];
+} oracle_edge;
+
+/// Does the line pass all edges?
+bool oracle_stab_passes(const oracle_edge *edges, int count, const double from[3], const double to[3]);
+
+/// Is there an x in R^6, line or not, that passes all edges?
+bool oracle_stab_program(const oracle_edge *edges, int count);
+
+/// Is there a real line that passes all edges? oracle_stab_program must have said yes.
+bool oracle_stab_line(const oracle_edge *edges, int count);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stabbing against the oracle: random portal sequences, many of them degenerate, and known ones.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "oracle_stab.h"
+#include "visibility/stab.h"
+
+enum { LENGTH = 40, CORNERS = 8, EDGES = LENGTH * CORNERS, KINDS = 10 };
+
+static const uint64_t seed = 4711;
+
+static uint64_t next_random(uint64_t *state) {
+    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
+static int between(uint64_t *state, int low, int high) {
+    return low + (int)(next_random(state) % (uint64_t)(high - low + 1));
+}
+
+/// Between -1 and 1.
+static double real(uint64_t *state) {
+    return (double)(int64_t)next_random(state) * 0x1p-63;
+}
+
+/// How many cases: `usual`, times the environment variable ENFILADE_TEST_SCALE.
+static long scaled(long usual) {
+    const char *text = getenv("ENFILADE_TEST_SCALE");
+    double scale = text ? atof(text) : 1;
+    return scale > 0 ? (long)ceil((double)usual * scale) : usual;
+}
+
+// ---- Sequences ----
+
+typedef struct passage {
+    enf_portal_graph graph;
+    enf_pluecker pluecker;
+    enf_stabber *stabber;
+    int32_t sequence[LENGTH];
+    int count;
+    oracle_edge edges[EDGES];
+    int edge_count;
+} passage;
+
+static void add_portal(passage *p, const double (*corners)[3], int count, bool turned) {
+    assert_true(enf_portal_graph_add(&p->graph, 0, 1, corners, count));
+    p->sequence[p->count] = 2 * p->count + turned;
+    p->count++;
+    for (int i = 0, before = count - 1; i < count; before = i++) {
+        if (memcmp(corners[before], corners[i], sizeof *corners) == 0) continue;
+        oracle_edge *edge = &p->edges[p->edge_count++];
+        memcpy(edge->a, corners[turned ? i : before], sizeof edge->a);
+        memcpy(edge->b, corners[turned ? before : i], sizeof edge->b);
+    }
+}
+
+static void finish(passage *p) {
+    p->graph.cell_count = 2;
+    assert_int_equal(enf_portal_graph_finish(&p->graph, NULL), ENF_OK);
+    assert_true(enf_pluecker_make(&p->pluecker, &p->graph));
+    p->stabber = enf_stabber_new(&p->pluecker);
+    assert_non_null(p->stabber);
+}
+
+static void destroy(passage *p) {
+    enf_stabber_free(p->stabber);
+    enf_pluecker_free(&p->pluecker);
+    enf_portal_graph_free(&p->graph);
+    free(p);
+}
+
+/// A polygon about `middle`, along the z axis if not tilted, turned round its normal; counter-clockwise from
+/// +z.
+static void add_polygon(passage *p, const double middle[3], double wide, double high, double turn,
+                        double tilt_x, double tilt_y, int corners, double grid) {
+    double corner[CORNERS][3];
+    for (int i = 0; i < corners; i++) {
+        const double angle = 2 * 3.141592653589793 * (i + 0.5) / corners;
+        const double u = wide * cos(angle), v = high * sin(angle);
+        const double x = u * cos(turn) - v * sin(turn), y = u * sin(turn) + v * cos(turn);
+        const double at[3] = {middle[0] + x, middle[1] + y, middle[2] + tilt_x * x + tilt_y * y};
+        for (int k = 0; k < 3; k++) corner[i][k] = grid > 0 ? rint(at[k] / grid) * grid : at[k];
+    }
+    add_portal(p, (const double(*)[3])corner, corners, false);
+}
+
+/// Doors along a corridor that moves aside from time to time.
+static void tunnel(passage *p, int length, double aside, double size, double grid, uint64_t *state) {
+    double middle[3] = {0, 0, 0}, step[2] = {real(state) * aside, real(state) * aside};
+    for (int i = 0; i < length; i++) {
+        add_polygon(p, middle, size * (1.2 + real(state)), size * (1.2 + real(state)), 3 * real(state),
+                    real(state) / 3, real(state) / 3, between(state, 3, 6), grid);
+        for (int k = 0; k < 2; k++) middle[k] += step[k] + real(state) * aside / 2;
+        middle[2] += 100 + 90 * real(state);
+    }
+}
+
+/// Teller's: long slits one behind the other, each turned. Six are more than the relaxation allows, five more
+/// than lines do.
+static void slits(passage *p, int length, double grid, uint64_t *state) {
+    const double thin = ldexp(40, -between(state, 0, 6));
+    for (int i = 0; i < length; i++) {
+        const double middle[3] = {20 * real(state), 20 * real(state), 100 * i};
+        add_polygon(p, middle, 400, thin * (1.1 + real(state)), 4 * real(state), real(state) / 4,
+                    real(state) / 4, 4, grid);
+    }
+}
+
+/// Slits along lines of one ruling of a hyperboloid, in whole numbers. All lines of the other ruling meet
+/// them; one is (64, -s, s). Each slit is moved sideways by up to `off` times its width: 1 touches that line.
+static void hyperboloid(passage *p, int length, double off, bool whole, uint64_t *state) {
+    for (int i = 0; i < length; i++) {
+        const int q = between(state, -12, 12), wide = between(state, 1, 3);
+        const double along[3] = {-8 * q, 16 - q * q, 16 + q * q}, across[3] = {-4, -q, -q};
+        const double aside = off * real(state) * wide, moved = whole ? rint(aside) : aside;
+        double corner[4][3];
+        for (int k = 0; k < 4; k++) {
+            const double u = k == 1 || k == 2 ? 2 : -2, v = (k >= 2 ? -wide : wide) + moved;
+            corner[k][0] = 64 + u * along[0] + v * across[0];
+            corner[k][1] = 16 * q + u * along[1] + v * across[1];
+            corner[k][2] = -16 * q + u * along[2] + v * across[2];
+        }
+        add_portal(p, (const double(*)[3])corner, 4, false);
+    }
+}
+
+/// Rectangles of whole numbers across the axes.
+static void rectangles(passage *p, int length, int range, uint64_t *state) {
+    const int usual = between(state, 0, 2);
+    int way = 0;
+    for (int i = 0; i < length; i++) {
+        const int axis = between(state, 0, 4) ? usual : between(state, 0, 2);
+        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+        const int low_a = between(state, -range, range - 1), low_b = between(state, -range, range - 1);
+        const int high_a = between(state, low_a + 1, range), high_b = between(state, low_b + 1, range);
+        double corner[4][3];
+        for (int k = 0; k < 4; k++) {
+            corner[k][axis] = axis == usual ? way : between(state, 0, range);
+            corner[k][a] = k == 1 || k == 2 ? high_a : low_a;
+            corner[k][b] = k >= 2 ? high_b : low_b;
+        }
+        for (int k = 1; k < 4; k++) corner[k][axis] = corner[0][axis];
+        way += between(state, 0, 3);
+        add_portal(p, (const double(*)[3])corner, 4, axis == usual ? false : between(state, 0, 1));
+    }
+}
+
+/// Triangles of a small lattice, the same way along z or any way; some of them repeated.
+static void triangles(passage *p, int length, int range, uint64_t *state) {
+    double corner[3][3];
+    for (int i = 0; i < length; i++) {
+        for (int k = 0; k < 9 && (i == 0 || between(state, 0, 7)); k++)
+            corner[k / 3][k % 3] = between(state, -range, range);
+        const double turn = (corner[1][0] - corner[0][0]) * (corner[2][1] - corner[0][1]) -
+                            (corner[1][1] - corner[0][1]) * (corner[2][0] - corner[0][0]);
+        add_portal(p, (const double(*)[3])corner, 3, between(state, 0, 9) ? turn < 0 : between(state, 0, 1));
+    }
+}
+
+static int random_length(uint64_t *state) {
+    int length = between(state, 2, 8);
+    if (!between(state, 0, 3)) length = between(state, 2, LENGTH);
+    return length;
+}
+
+static passage *random_passage(int kind, uint64_t *state) {
+    passage *p = calloc(1, sizeof *p);
+    assert_non_null(p);
+    const int length = random_length(state), few = between(state, 2, 6);
+    switch (kind) {
+    case 0:
+        tunnel(p, length, 20, 40, 0, state);
+        break;
+    case 1:
+        tunnel(p, length, 60, 60, 1, state);
+        break;
+    case 2:
+        tunnel(p, length, 5, 40, 8, state);
+        break;
+    case 3:
+        slits(p, few, 0, state);
+        break;
+    case 4:
+        slits(p, few, 1, state);
+        break;
+    case 5:
+        hyperboloid(p, few + 2, 1.2, false, state);
+        break;
+    case 6:
+        hyperboloid(p, few + 1, 1.3, true, state);
+        break;
+    case 7:
+        rectangles(p, length, between(state, 2, 6), state);
+        break;
+    case 8:
+        triangles(p, few, between(state, 1, 4), state);
+        break;
+    default:
+        rectangles(p, few, between(state, 2, 3), state);
+        break;
+    }
+    finish(p);
+    return p;
+}
+
+typedef struct tally {
+    long hidden, relaxed_only, with_line, without_line;
+    enf_stab_counts counts;
+} tally;
+
+static void check_passage(passage *p, tally *sum) {
+    enf_stab relaxed, exact;
+    const bool program = oracle_stab_program(p->edges, p->edge_count);
+    assert_int_equal(enf_stab_lp(p->stabber, p->sequence, p->count, NULL, &relaxed, NULL), ENF_OK);
+    assert_int_equal(enf_stab_exact(p->stabber, p->sequence, p->count, NULL, &exact, NULL), ENF_OK);
+    assert_int_equal(relaxed.answer != ENF_STAB_HIDDEN, program);
+    if (relaxed.answer == ENF_STAB_VISIBLE) {
+        assert_true(relaxed.has_line);
+        assert_true(oracle_stab_passes(p->edges, p->edge_count, relaxed.line.from, relaxed.line.to));
+    }
+    assert_int_not_equal(exact.answer, ENF_STAB_OPEN);
+    if (exact.has_line) {
+        assert_int_equal(exact.answer, ENF_STAB_VISIBLE);
+        assert_true(oracle_stab_passes(p->edges, p->edge_count, exact.line.from, exact.line.to));
+    } else if (program) {
+        assert_int_equal(exact.answer == ENF_STAB_VISIBLE, oracle_stab_line(p->edges, p->edge_count));
+    } else {
+        assert_int_equal(exact.answer, ENF_STAB_HIDDEN);
+    }
+    sum->hidden += !program;
+    sum->relaxed_only += program && exact.answer == ENF_STAB_HIDDEN;
+    sum->with_line += exact.has_line;
+    sum->without_line += exact.answer == ENF_STAB_VISIBLE && !exact.has_line;
+    const enf_stab_counts *counts = enf_stabber_counts(p->stabber);
+    sum->counts.zero_by_double += counts->zero_by_double;
+    sum->counts.zero_by_whole += counts->zero_by_whole;
+    sum->counts.programs += counts->programs;
+    sum->counts.quadrics += counts->quadrics;
+    sum->counts.undecided += counts->undecided;
+}
+
+static void answers_are_the_oracles(void **unused) {
+    (void)unused;
+    uint64_t state = seed;
+    const long cases = scaled(20000);
+    tally sum[KINDS] = {{0}};
+    for (long i = 0; i < cases; i++) {
+        passage *p = random_passage((int)(i % KINDS), &state);
+        if (getenv("VERBOSE")) print_message("case %ld\n", i);
+        check_passage(p, &sum[i % KINDS]);
+        destroy(p);
+    }
+    print_message("seed %llu, %ld sequences\n", (unsigned long long)seed, cases);
+    for (int k = 0; k < KINDS; k++) {
+        const tally *t = &sum[k];
+        print_message("kind %d: hidden %ld, by the quadric only %ld, line %ld, no double line %ld; zero by "
+                      "double %lld, "
+                      "by whole %lld, programs %lld, quadrics %lld\n",
+                      k, t->hidden, t->relaxed_only, t->with_line, t->without_line,
+                      (long long)t->counts.zero_by_double, (long long)t->counts.zero_by_whole,
+                      (long long)t->counts.programs, (long long)t->counts.quadrics);
+        assert_int_equal(t->counts.undecided, 0);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(answers_are_the_oracles),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
