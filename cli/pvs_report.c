@@ -25,6 +25,22 @@ static void put_lengths(enf_json *json, const enf_visibility *visibility) {
     json->one_line = false;
 }
 
+/// What it took to decide sequences.
+static void put_stabs(enf_json *json, const enf_stab_counts *stabs) {
+    enf_json_begin_object(json, "stabs");
+    enf_json_whole(json, "calls", stabs->calls);
+    enf_json_whole(json, "hints", stabs->hints);
+    enf_json_whole(json, "zero_by_double", stabs->zero_by_double);
+    enf_json_whole(json, "zero_by_whole", stabs->zero_by_whole);
+    enf_json_whole(json, "programs", stabs->programs);
+    enf_json_whole(json, "searched", stabs->searched);
+    enf_json_whole(json, "quadrics", stabs->quadrics);
+    enf_json_whole(json, "quadrics_hidden", stabs->quadrics_hidden);
+    enf_json_whole(json, "undecided", stabs->undecided);
+    enf_json_whole(json, "lines_missing", stabs->lines_missing);
+    enf_json_end_object(json);
+}
+
 static void put_visibility(enf_json *json, const enf_visibility *visibility) {
     enf_json_begin_object(json, "pvs");
     enf_json_text(json, "method", enf_method_name(visibility->method));
@@ -32,11 +48,13 @@ static void put_visibility(enf_json *json, const enf_visibility *visibility) {
     enf_json_number(json, "mean_seen", enf_pvs_mean_seen(&visibility->pvs));
     enf_json_whole(json, "witnesses", visibility->witness_count);
     enf_json_whole(json, "portal_pairs", visibility->portal_pairs);
+    enf_json_whole(json, "visits", visibility->visits);
+    enf_json_whole(json, "lines", visibility->lines);
+    enf_json_whole(json, "pairs_open", visibility->pairs_open);
     enf_json_whole(json, "nodes", visibility->nodes);
-    enf_json_whole(json, "rays", visibility->rays);
-    enf_json_whole(json, "lp_calls", visibility->lp_calls);
-    enf_json_whole(json, "exact_calls", visibility->exact_calls);
+    put_stabs(json, &visibility->stabs);
     enf_json_whole(json, "cells_budgeted", visibility->cells_budgeted);
+    enf_json_whole(json, "pairs_budgeted", visibility->pairs_budgeted);
     enf_json_whole(json, "sequence_longest", visibility->sequence_longest);
     put_lengths(json, visibility);
     enf_json_number(json, "seconds", visibility->seconds);
@@ -82,21 +100,25 @@ void cli_pvs_report_summary(const cli_pvs_result *result, const char *output, FI
             output, result->graph.cell_count, result->graph.opening_count,
             enf_method_name(visibility->method), enf_pvs_pairs(&visibility->pvs),
             enf_pvs_mean_seen(&visibility->pvs), result->seconds, (double)result->peak_bytes / 1e6);
-    if (visibility->cells_budgeted > 0)
+    if (visibility->cells_budgeted + visibility->pairs_budgeted > 0)
         fprintf(out,
-                "the budget of %g s ran out for %" PRId64
-                " cells: what they might see counts as seen; a larger --budget tells more\n",
-                result->options.budget_seconds, visibility->cells_budgeted);
+                "the budget of %g s ran out for the beams of %" PRId64 " cells and for %" PRId64
+                " pairs: what might be seen counts as seen; a larger --budget tells more\n",
+                result->options.budget_seconds, visibility->cells_budgeted, visibility->pairs_budgeted);
 }
 
 void cli_pvs_report_verbose(const cli_pvs_result *result, FILE *out) {
     const enf_visibility *visibility = &result->visibility;
+    fprintf(out, "visibility     %8.3f s, %.3f s of processor time on %d threads\n", visibility->seconds,
+            visibility->cpu_seconds, result->options.threads);
     fprintf(out,
-            "visibility     %8.3f s (%.3f s of %d processors' time); %" PRId64 " portal pairs, %" PRId64
-            " nodes, %" PRId64 " rays, %" PRId64 " LPs, %" PRId64 " exact; longest sequence %" PRId32
-            " portals\n",
-            visibility->seconds, visibility->cpu_seconds, result->options.threads, visibility->portal_pairs,
-            visibility->nodes, visibility->rays, visibility->lp_calls, visibility->exact_calls,
+            "beams          %8" PRId64 " portal pairs by %" PRId64 " visits; %" PRId64 " sight lines\n",
+            visibility->portal_pairs, visibility->visits, visibility->lines);
+    fprintf(out,
+            "sequences      %8" PRId64 " open pairs of cells by %" PRId64 " nodes, of which %" PRId64
+            " were decided, %" PRId64 " in whole numbers; the longest line passes %" PRId32 " portals\n",
+            visibility->pairs_open, visibility->nodes, visibility->stabs.calls,
+            visibility->stabs.zero_by_whole + visibility->stabs.programs + visibility->stabs.quadrics,
             visibility->sequence_longest);
     if (result->options.want_witnesses)
         fprintf(out, "witnesses      %8" PRId64 "\n", visibility->witness_count);

@@ -62,9 +62,36 @@ static void add_planes(enf_separators *separators, const enf_shapes *shapes, con
     }
 }
 
+void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, int32_t from_portal) {
+    separators->count = 1;
+    separators->cuts[0] = enf_shape_cut(shapes, from_portal);
+}
+
 void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
                          int32_t from_portal, const enf_window *to, int32_t to_portal) {
-    separators->count = 0;
+    enf_separators_begin(separators, shapes, from_portal);
     add_planes(separators, shapes, from, to, !(from_portal & 1), true);
     add_planes(separators, shapes, to, from, to_portal & 1, false);
+}
+
+/// False if some cut leaves nothing of the sphere. *needed receives the cuts that may take something.
+static bool meets_sphere(const enf_separators *separators, const enf_shape *shape, uint64_t *needed) {
+    *needed = 0;
+    for (int32_t i = 0; i < separators->count; i++) {
+        const enf_cut *cut = &separators->cuts[i];
+        double height = enf_dot(cut->normal, shape->centre) - (cut->offset - cut->slack);
+        if (height < -shape->radius) return false;
+        if (height < shape->radius) *needed |= UINT64_C(1) << i;
+    }
+    return true;
+}
+
+bool enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
+                         enf_window *window) {
+    uint64_t needed;
+    if (!meets_sphere(separators, &shapes->shapes[portal >> 1], &needed)) return false;
+    enf_shape_window(shapes, portal, window);
+    for (; needed; needed &= needed - 1)
+        if (!enf_window_cut(window, &separators->cuts[__builtin_ctzll(needed)])) return false;
+    return true;
 }

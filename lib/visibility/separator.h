@@ -14,11 +14,18 @@ typedef struct enf_separators {
     enf_cut cuts[ENF_SEPARATORS_MOST];
 } enf_separators;
 
-/// Finds the planes through an edge of one window and a corner of the other that have `from` behind and `to`
-/// in front: lines that pass `from` and then `to` stay in front from there on. `from` is the window of a
-/// directed portal with `from_portal`'s sense, `to` of `to_portal`'s. A plane that rounding could tilt too
-/// much is left out, or given the slack it needs.
+/// For lines that have passed one directed portal only: they go on beyond its plane.
+void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, int32_t from_portal);
+
+/// The same, and the planes through an edge of one window and a corner of the other that have `from` behind
+/// and `to` in front: lines that pass `from` and then `to` stay in front from there on. `from` is a window of
+/// the directed portal `from_portal`, `to` of `to_portal`. A plane that rounding could tilt too much is left
+/// out, or given the slack it needs.
 void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
                          int32_t from_portal, const enf_window *to, int32_t to_portal);
+
+/// What they leave of another portal's opening. False if nothing.
+bool enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
+                         enf_window *window);
 
 #endif

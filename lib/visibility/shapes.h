@@ -7,10 +7,10 @@
 #include "visibility/window.h"
 
 typedef struct enf_shape {
-    double normal[3], offset;  ///< the plane of portal 2k, normal of length 1
-    double centre[3], radius;  ///< a sphere around the corners
-    int32_t first, count;      ///< of its corners in outlines
-    int32_t axes[2];           ///< seen along the third axis (from its far end) it turns counter-clockwise
+    double normal[3], offset; ///< the plane of portal 2k, normal of length 1
+    double centre[3], radius; ///< a sphere around the corners
+    int32_t first, count;     ///< of its corners in outlines
+    int32_t axes[2];          ///< seen along the third axis (from its far end) it turns counter-clockwise
 } enf_shape;
 
 typedef struct enf_shapes {
@@ -31,6 +31,11 @@ void enf_shapes_free(enf_shapes *shapes);
 
 static inline const double (*enf_shape_outline(const enf_shapes *shapes, int32_t opening))[3] {
     return (const double(*)[3])shapes->outlines + shapes->shapes[opening].first;
+}
+
+/// The whole outline of a directed portal's opening as a window.
+static inline void enf_shape_window(const enf_shapes *shapes, int32_t portal, enf_window *window) {
+    enf_window_copy(window, enf_shape_outline(shapes, portal >> 1), shapes->shapes[portal >> 1].count);
 }
 
 /// The height of a point above the plane of a directed portal: positive beyond it.

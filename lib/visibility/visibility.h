@@ -6,6 +6,7 @@
 #include "visibility/line.h"
 #include "visibility/portal_graph.h"
 #include "visibility/pvs.h"
+#include "visibility/stab.h"
 
 /// Each is applied on top of the ones before it, so each set contains the next. A cell is seen if
 typedef enum enf_method {
@@ -22,6 +23,8 @@ const char *enf_method_name(enf_method method);
 
 /// The method of that name; false if there is none.
 bool enf_method_find(const char *name, enf_method *method);
+
+enum { ENF_SEQUENCE_LENGTHS = 64 };
 
 typedef struct enf_visibility_options {
     enf_method method;
@@ -44,11 +47,19 @@ typedef struct enf_visibility {
     int32_t (*witness_cells)[2]; ///< witness_count; i < j
     int64_t witness_count;
 
-    int64_t portal_pairs, nodes, rays, lp_calls, exact_calls; ///< how much was looked at
-    int64_t cells_budgeted;                                   ///< cells for which the budget ran out
-    int32_t sequence_longest;                                 ///< portals
-    /// How many visible pairs had a shortest found sequence of that many portals; the last: so many or more.
-    int64_t sequence_lengths[64];
+    // How much was looked at, by rung.
+    int64_t portal_pairs;   ///< hourglass: directed portals that may see each other
+    int64_t visits;         ///< hourglass: how often a beam came to a portal
+    int64_t lines;          ///< hourglass: sight lines that were tried
+    int64_t pairs_open;     ///< lp and exact: pairs of cells that neither beams nor lines had decided
+    int64_t nodes;          ///< lp and exact: portals that sequences came to
+    enf_stab_counts stabs;  ///< lp and exact: what it took to decide sequences
+    int64_t cells_budgeted; ///< cells whose beams were too late for the budget
+    int64_t pairs_budgeted; ///< pairs that were, and count as seen
+
+    // Of pairs that were proved visible: how many portals the line passes that proved it.
+    int32_t sequence_longest;
+    int64_t sequence_lengths[ENF_SEQUENCE_LENGTHS]; ///< the last: so many or more
     double seconds, cpu_seconds;
 } enf_visibility;
 
