@@ -105,37 +105,36 @@ void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window
         enf_window_copy(window, (const double(*)[3])beam->corners, beam->count);
 }
 
-static void keep(beam *beam, const enf_window *window) {
-    beam->is_whole = window->count > KEPT_MOST || beam->growths >= GROWTHS_MOST;
+static void keep(beam *beam, const enf_window *window, enf_remains remains) {
+    beam->is_whole =
+        remains == ENF_REMAINS_WHOLE || window->count > KEPT_MOST || beam->growths >= GROWTHS_MOST;
     if (beam->is_whole) return;
     beam->count = window->count;
     memcpy(beam->corners, window->corners, (size_t)window->count * sizeof *window->corners);
 }
 
 /// A portal is reached for the first time.
-static void reach(enf_beams *beams, int32_t source, int32_t portal, const enf_window *window) {
+static void reach(enf_beams *beams, int32_t source, int32_t portal, enf_remains remains) {
     beam *beam = &beams->beams[portal];
     beam->depth = enf_shape_height(beams->shapes, source, beams->shapes->shapes[portal >> 1].centre);
     beam->growths = 0;
-    keep(beam, window);
+    keep(beam, &beams->window, remains);
     beams->reached[beams->reached_count++] = portal;
     push(beams, portal);
 }
 
 /// Merges the window into what was reached before.
-static void merge(enf_beams *beams, int32_t portal, const enf_window *window) {
+static void merge(enf_beams *beams, int32_t portal, enf_remains remains) {
     beam *beam = &beams->beams[portal];
-    if (beam->is_whole) return;
     const enf_shape *shape = &beams->shapes->shapes[portal >> 1];
     enf_window *merged = &beams->merged;
     enf_beams_window(beams, portal, merged);
-    if (merged->count + window->count > ENF_WINDOW_MOST)
-        beam->growths = GROWTHS_MOST;
-    else if (!enf_hull_extend(merged, window, shape->axes, beams->shapes->tolerance))
-        return;
-    else
+    if (merged->count + beams->window.count > ENF_WINDOW_MOST) remains = ENF_REMAINS_WHOLE;
+    if (remains != ENF_REMAINS_WHOLE) {
+        if (!enf_hull_extend(merged, &beams->window, shape->axes, beams->shapes->tolerance)) return;
         beam->growths++;
-    keep(beam, merged);
+    }
+    keep(beam, merged, remains);
     if (beam->state == BEAM_REACHED) push(beams, portal);
 }
 
@@ -151,16 +150,19 @@ static void spread(enf_beams *beams, int32_t source, int32_t via) {
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
         int32_t next = graph->cell_portals[k];
         if (!enf_bit_get(row, next) || !enf_bit_get(via_row, next)) continue;
+        bool is_new = beams->beams[next].state == BEAM_NONE;
+        if (!is_new && beams->beams[next].is_whole) continue; // nothing to add
         if (!ready) {
             enf_beams_window(beams, via, &beams->via);
             enf_separators_find(&beams->separators, beams->shapes, &beams->from, source, &beams->via, via);
             ready = true;
         }
-        if (!enf_separators_pass(&beams->separators, beams->shapes, next, &beams->window)) continue;
-        if (beams->beams[next].state == BEAM_NONE)
-            reach(beams, source, next, &beams->window);
+        enf_remains remains = enf_separators_pass(&beams->separators, beams->shapes, next, &beams->window);
+        if (remains == ENF_REMAINS_NOTHING) continue;
+        if (is_new)
+            reach(beams, source, next, remains);
         else
-            merge(beams, next, &beams->window);
+            merge(beams, next, remains);
     }
 }
 

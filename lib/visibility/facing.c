@@ -8,11 +8,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+/// What one thread has.
+typedef struct flooder {
+    int32_t *queue;
+    uint64_t *failed; ///< a row of portals: looked at, and not facing
+} flooder;
+
 typedef struct search {
     const enf_shapes *shapes;
     const enf_bits *before; ///< what an earlier flood found, or null
     enf_bits *found;
-    int32_t **queues;
+    int32_t *follow; ///< per portal, an offset into follows
+    bool *follows;   ///< whether each portal of the cell behind it faces it, in the order of cell_portals
+    flooder *flooders;
 } search;
 
 /// Is some of the opening higher than the portal's plane (side 1), or lower (side -1)?
@@ -33,32 +41,61 @@ static bool is_facing(const enf_shapes *shapes, int32_t portal, int32_t other) {
            has_corner(shapes, other, portal >> 1, -1);
 }
 
-/// In the first flood each pair is looked at once: what fails is remembered, too.
-static void flood(const search *search, int32_t portal, int32_t *queue) {
+/// Could a line through the source pass this portal? Each is looked at once: what fails is remembered, too.
+static bool can_pass(const search *search, const flooder *flooder, int32_t source, int32_t portal) {
+    if (search->before) return enf_bit_get(enf_bits_row(search->before, source), portal);
+    if (enf_bit_get(flooder->failed, portal)) return false;
+    if (is_facing(search->shapes, source, portal)) return true;
+    enf_bit_set(flooder->failed, portal);
+    return false;
+}
+
+static void flood(const search *search, int32_t source, const flooder *flooder) {
     const enf_portal_graph *graph = search->shapes->graph;
-    uint64_t *row = enf_bits_row(search->found, portal);
-    const uint64_t *before = search->before ? enf_bits_row(search->before, portal) : NULL;
+    uint64_t *row = enf_bits_row(search->found, source);
     int32_t count = 0;
-    queue[count++] = portal;
+    memset(flooder->failed, 0, search->found->row_words * sizeof *row);
+    flooder->queue[count++] = source;
     for (int32_t at = 0; at < count; at++) {
-        int32_t via = queue[at], cell = enf_portal_to(graph, via);
+        int32_t via = flooder->queue[at], cell = enf_portal_to(graph, via);
+        const bool *follows = search->follows + search->follow[via];
         const uint64_t *via_before = search->before ? enf_bits_row(search->before, via) : NULL;
-        for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
+        for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++, follows++) {
             int32_t next = graph->cell_portals[k];
-            if (next >> 1 == via >> 1 || enf_bit_get(row, next)) continue;
-            bool good = before ? enf_bit_get(before, next) && enf_bit_get(via_before, next)
-                               : is_facing(search->shapes, portal, next) &&
-                                     (via == portal || is_facing(search->shapes, via, next));
-            if (!good) continue;
+            if (!*follows || enf_bit_get(row, next) || (via_before && !enf_bit_get(via_before, next)))
+                continue;
+            if (!can_pass(search, flooder, source, next)) continue;
             enf_bit_set(row, next);
-            queue[count++] = next;
+            flooder->queue[count++] = next;
         }
     }
 }
 
 static void flood_job(void *user, int32_t index, int thread) {
     const search *search = user;
-    flood(search, index, search->queues[thread]);
+    flood(search, index, &search->flooders[thread]);
+}
+
+static bool make_follows(search *search) {
+    const enf_portal_graph *graph = search->shapes->graph;
+    int32_t portals = 2 * graph->opening_count;
+    search->follow = enf_array_new((size_t)portals, sizeof *search->follow);
+    size_t count = 0;
+    for (int32_t p = 0; p < portals; p++) {
+        const int32_t *of = &graph->cell_portal[enf_portal_to(graph, p)];
+        if (search->follow) search->follow[p] = (int32_t)count;
+        count += (size_t)(of[1] - of[0]);
+        if (count > INT32_MAX) return false;
+    }
+    search->follows = enf_array_new(count, sizeof *search->follows);
+    if (!search->follow || !search->follows) return false;
+    for (int32_t p = 0; p < portals; p++) {
+        const int32_t *of = &graph->cell_portal[enf_portal_to(graph, p)];
+        for (int32_t k = of[0]; k < of[1]; k++)
+            search->follows[search->follow[p] + k - of[0]] =
+                is_facing(search->shapes, p, graph->cell_portals[k]);
+    }
+    return true;
 }
 
 void enf_facing_symmetrise(enf_bits *bits) {
@@ -76,17 +113,26 @@ static enf_status flood_all(search *search, const enf_crew *crew, enf_error *err
     return ENF_OK;
 }
 
-static bool make_queues(search *search, int threads) {
+static bool make_search(search *search, int threads) {
     size_t portals = 2 * (size_t)search->shapes->graph->opening_count;
-    search->queues = enf_array_zeroed((size_t)threads, sizeof *search->queues);
-    for (int i = 0; search->queues && i < threads; i++)
-        if (!(search->queues[i] = enf_array_new(portals + 1, sizeof **search->queues))) return false;
-    return search->queues != NULL;
+    search->flooders = enf_array_zeroed((size_t)threads, sizeof *search->flooders);
+    for (int i = 0; search->flooders && i < threads; i++) {
+        flooder *flooder = &search->flooders[i];
+        flooder->queue = enf_array_new(portals + 1, sizeof *flooder->queue);
+        flooder->failed = enf_array_new(search->found->row_words, sizeof *flooder->failed);
+        if (!flooder->queue || !flooder->failed) return false;
+    }
+    return search->flooders && make_follows(search);
 }
 
-static void free_queues(search *search, int threads) {
-    for (int i = 0; search->queues && i < threads; i++) free(search->queues[i]);
-    free(search->queues);
+static void free_search(search *search, int threads) {
+    for (int i = 0; search->flooders && i < threads; i++) {
+        free(search->flooders[i].queue);
+        free(search->flooders[i].failed);
+    }
+    free(search->flooders);
+    free(search->follow);
+    free(search->follows);
 }
 
 enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, const enf_crew *crew,
@@ -95,13 +141,13 @@ enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, const enf
     enf_bits first = {0};
     search search = {.shapes = shapes, .found = &first};
     bool good = enf_bits_new(facing, portals, portals) && enf_bits_new(&first, portals, portals) &&
-                make_queues(&search, crew->threads);
+                make_search(&search, crew->threads);
     enf_status status = good ? ENF_OK : enf_fail_memory(error, "the portals that face each other");
     if (!status) status = flood_all(&search, crew, error);
     search.before = &first;
     search.found = facing;
     if (!status) status = flood_all(&search, crew, error);
-    free_queues(&search, crew->threads);
+    free_search(&search, crew->threads);
     enf_bits_free(&first);
     return status;
 }

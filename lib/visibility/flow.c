@@ -150,7 +150,8 @@ static enf_status step(enf_flow *flow, int32_t depth, int32_t portal, bool *deep
         enf_separators_find(&level->separators, shapes, &flow->from, flow->levels[0].portal, &level->window,
                             level->portal);
     level->ready = true;
-    if (!enf_separators_pass(&level->separators, shapes, portal, &next->window)) return ENF_OK;
+    if (enf_separators_pass(&level->separators, shapes, portal, &next->window) == ENF_REMAINS_NOTHING)
+        return ENF_OK;
     flow->nodes++;
     next->portal = portal;
     next->next = shapes->graph->cell_portal[enf_portal_to(shapes->graph, portal)];

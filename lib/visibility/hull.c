@@ -19,7 +19,7 @@ static bool is_within(const enf_window *window, const enf_window *other, const i
     int u = axes[0], v = axes[1];
     for (int32_t i = 0; i < window->count; i++) {
         const double *a = window->corners[i], *b = window->corners[i + 1 < window->count ? i + 1 : 0];
-        double least = -tolerance * fmax(fabs(b[u] - a[u]), fabs(b[v] - a[v]));
+        double least = -tolerance * (fabs(b[u] - a[u]) + fabs(b[v] - a[v]));
         for (int32_t k = 0; k < other->count; k++)
             if (turn(a, b, other->corners[k], axes) < least) return false;
     }

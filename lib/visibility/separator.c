@@ -30,16 +30,23 @@ static bool find_tangent(const double a[3], const double b[3], const enf_window 
     return true;
 }
 
+/// (fmax would be a call here, for the sake of NaN.)
 static double highest(const enf_window *window, const double normal[3]) {
-    double height = enf_dot(normal, window->corners[0]);
-    for (int32_t i = 1; i < window->count; i++) height = fmax(height, enf_dot(normal, window->corners[i]));
-    return height;
+    double highest = enf_dot(normal, window->corners[0]);
+    for (int32_t i = 1; i < window->count; i++) {
+        double height = enf_dot(normal, window->corners[i]);
+        if (height > highest) highest = height;
+    }
+    return highest;
 }
 
 static double lowest(const enf_window *window, const double normal[3]) {
-    double height = enf_dot(normal, window->corners[0]);
-    for (int32_t i = 1; i < window->count; i++) height = fmin(height, enf_dot(normal, window->corners[i]));
-    return height;
+    double lowest = enf_dot(normal, window->corners[0]);
+    for (int32_t i = 1; i < window->count; i++) {
+        double height = enf_dot(normal, window->corners[i]);
+        if (height < lowest) lowest = height;
+    }
+    return lowest;
 }
 
 /// Through the edges of `one`, which turns counter-clockwise against the sight if `turns`. Of the two windows
@@ -57,8 +64,7 @@ static void add_planes(enf_separators *separators, const enf_shapes *shapes, con
         enf_cut *cut = &separators->cuts[separators->count++];
         for (int axis = 0; axis < 3; axis++)
             cut->normal[axis] = forward ? tangent.normal[axis] : -tangent.normal[axis];
-        cut->offset = forward ? front : -behind;
-        cut->slack = slack;
+        cut->least = (forward ? front : -behind) - slack;
     }
 }
 
@@ -79,19 +85,23 @@ static bool meets_sphere(const enf_separators *separators, const enf_shape *shap
     *needed = 0;
     for (int32_t i = 0; i < separators->count; i++) {
         const enf_cut *cut = &separators->cuts[i];
-        double height = enf_dot(cut->normal, shape->centre) - (cut->offset - cut->slack);
+        double height = enf_dot(cut->normal, shape->centre) - cut->least;
         if (height < -shape->radius) return false;
         if (height < shape->radius) *needed |= UINT64_C(1) << i;
     }
     return true;
 }
 
-bool enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
-                         enf_window *window) {
+enf_remains enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
+                                enf_window *window) {
     uint64_t needed;
-    if (!meets_sphere(separators, &shapes->shapes[portal >> 1], &needed)) return false;
+    if (!meets_sphere(separators, &shapes->shapes[portal >> 1], &needed)) return ENF_REMAINS_NOTHING;
     enf_shape_window(shapes, portal, window);
-    for (; needed; needed &= needed - 1)
-        if (!enf_window_cut(window, &separators->cuts[__builtin_ctzll(needed)])) return false;
-    return true;
+    enf_remains remains = ENF_REMAINS_WHOLE;
+    for (; needed; needed &= needed - 1) {
+        enf_remains now = enf_window_cut(window, &separators->cuts[__builtin_ctzll(needed)]);
+        if (now == ENF_REMAINS_NOTHING) return now;
+        if (now == ENF_REMAINS_PART) remains = now;
+    }
+    return remains;
 }

@@ -24,8 +24,8 @@ void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, 
 void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
                          int32_t from_portal, const enf_window *to, int32_t to_portal);
 
-/// What they leave of another portal's opening. False if nothing.
-bool enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
-                         enf_window *window);
+/// What they leave of another portal's opening.
+enf_remains enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
+                                enf_window *window);
 
 #endif

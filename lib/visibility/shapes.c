@@ -129,6 +129,5 @@ enf_cut enf_shape_cut(const enf_shapes *shapes, int32_t portal) {
     const enf_shape *shape = &shapes->shapes[portal >> 1];
     double sign = portal & 1 ? -1 : 1;
     return (enf_cut){.normal = {sign * shape->normal[0], sign * shape->normal[1], sign * shape->normal[2]},
-                     .offset = sign * shape->offset,
-                     .slack = shapes->tolerance};
+                     .least = sign * shape->offset - shapes->tolerance};
 }

@@ -15,15 +15,15 @@ static void cross(const double a[3], const double b[3], double height_a, double 
     for (int axis = 0; axis < 3; axis++) at[axis] = a[axis] + share * (b[axis] - a[axis]);
 }
 
-bool enf_window_cut(enf_window *window, const enf_cut *cut) {
+enf_remains enf_window_cut(enf_window *window, const enf_cut *cut) {
     double heights[ENF_WINDOW_MOST];
     int32_t count = window->count, inside = 0;
     for (int32_t i = 0; i < count; i++) {
-        heights[i] = enf_dot(cut->normal, window->corners[i]) - (cut->offset - cut->slack);
+        heights[i] = enf_dot(cut->normal, window->corners[i]) - cut->least;
         inside += heights[i] >= 0;
     }
-    if (inside == count || count == ENF_WINDOW_MOST) return true;
-    if (inside == 0) return false;
+    if (inside == count || count == ENF_WINDOW_MOST) return ENF_REMAINS_WHOLE;
+    if (inside == 0) return ENF_REMAINS_NOTHING;
     double left[ENF_WINDOW_MOST][3];
     int32_t made = 0;
     for (int32_t i = 0; i < count; i++) {
@@ -34,7 +34,7 @@ bool enf_window_cut(enf_window *window, const enf_cut *cut) {
         cross(window->corners[i], window->corners[next], heights[i], heights[next], left[made++]);
     }
     enf_window_copy(window, (const double(*)[3])left, made);
-    return true;
+    return ENF_REMAINS_PART;
 }
 
 void enf_window_middle(const enf_window *window, double middle[3]) {

@@ -15,9 +15,9 @@ typedef struct enf_window {
     double corners[ENF_WINDOW_MOST][3]; ///< only the first `count` are there, so copy with enf_window_copy
 } enf_window;
 
-/// Keeps what is in front: normal . x >= offset - slack.
+/// Keeps what is in front: normal . x >= least.
 typedef struct enf_cut {
-    double normal[3], offset, slack; ///< the normal has length 1
+    double normal[3], least; ///< the normal has length 1
 } enf_cut;
 
 static inline double enf_dot(const double a[3], const double b[3]) {
@@ -26,8 +26,10 @@ static inline double enf_dot(const double a[3], const double b[3]) {
 
 void enf_window_copy(enf_window *window, const double (*corners)[3], int32_t count);
 
-/// Cuts a piece off. False if nothing is left.
-bool enf_window_cut(enf_window *window, const enf_cut *cut);
+typedef enum enf_remains { ENF_REMAINS_NOTHING, ENF_REMAINS_PART, ENF_REMAINS_WHOLE } enf_remains;
+
+/// Cuts a piece off, and says what is left.
+enf_remains enf_window_cut(enf_window *window, const enf_cut *cut);
 
 /// The mean of the corners.
 void enf_window_middle(const enf_window *window, double middle[3]);
