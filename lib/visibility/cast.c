@@ -179,8 +179,7 @@ static void sum_up(casting *casting) {
     }
 }
 
-enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, const enf_workplace *place,
-                        enf_error *error) {
+enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, enf_workplace *place, enf_error *error) {
     casting casting = {.cast = cast, .sightings = sightings, .deadline = place->deadline};
     int threads = place->crew.threads;
     enf_status status = make_casting(&casting, threads) ? ENF_OK : enf_fail_memory(error, "the beams");

@@ -19,7 +19,6 @@ typedef struct enf_cast {
 } enf_cast;
 
 /// Casts everything. What lines prove is added to the sightings, if there are any.
-enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, const enf_workplace *place,
-                        enf_error *error);
+enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, enf_workplace *place, enf_error *error);
 
 #endif

@@ -213,7 +213,7 @@ static uint64_t find_key(const settling *settling) {
     return enf_hash64(seen->words, (size_t)seen->row_count * seen->row_words * 8, key);
 }
 
-static enf_status settle_all(settling *settling, const enf_workplace *place, enf_error *error) {
+static enf_status settle_all(settling *settling, enf_workplace *place, enf_error *error) {
     settle_result sum = {0};
     enf_settlement *settlement = settling->settlement;
     int32_t cells = settlement->shapes->graph->cell_count;
@@ -236,7 +236,7 @@ static enf_status settle_all(settling *settling, const enf_workplace *place, enf
     return add_late(settling) ? ENF_OK : enf_fail_memory(error, "the sight lines");
 }
 
-enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, const enf_workplace *place,
+enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, enf_workplace *place,
                           enf_error *error) {
     settling settling = {.settlement = settlement, .sightings = sightings};
     enf_pluecker pluecker = {0};

@@ -21,7 +21,7 @@ typedef struct enf_settlement {
 } enf_settlement;
 
 /// Adds what is seen to the sightings, one way.
-enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, const enf_workplace *place,
+enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, enf_workplace *place,
                           enf_error *error);
 
 #endif

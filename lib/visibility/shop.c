@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-bool enf_shop_make(enf_shop *shop, const enf_work *work, const enf_workplace *place, bool *begun) {
+bool enf_shop_make(enf_shop *shop, const enf_work *work, enf_workplace *place, bool *begun) {
     *shop = (enf_shop){.work = work, .place = place, .begun = begun};
     shop->leads = !place->team || place->team->rank == 0;
     pthread_condattr_t attributes;

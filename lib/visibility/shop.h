@@ -19,7 +19,7 @@ typedef enum enf_outcome {
 
 typedef struct enf_shop {
     const enf_work *work;
-    const enf_workplace *place;
+    enf_workplace *place;
     bool leads; ///< alone, or rank 0
     pthread_t threads[ENF_SHOP_THREADS_MAX];
     int thread_count;
@@ -41,7 +41,7 @@ typedef struct enf_shop {
 } enf_shop;
 
 /// No cells yet. False without memory. Free it in any case, after its threads have ended.
-bool enf_shop_make(enf_shop *shop, const enf_work *work, const enf_workplace *place, bool *begun);
+bool enf_shop_make(enf_shop *shop, const enf_work *work, enf_workplace *place, bool *begun);
 void enf_shop_free(enf_shop *shop);
 
 /// Starts the threads. Where the system refuses all of them and no more cells will come, the caller's does

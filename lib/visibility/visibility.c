@@ -48,7 +48,7 @@ static bool watch(void *user, double fraction) {
            ladder->options->progress(ladder->options->progress_user, ladder->stage, fraction);
 }
 
-static const enf_workplace *place_for(ladder *ladder, const char *stage) {
+static enf_workplace *place_for(ladder *ladder, const char *stage) {
     ladder->stage = stage;
     ladder->place.crew = (enf_crew){.threads = ladder->options->threads, .watch = watch, .user = ladder};
     return &ladder->place;
@@ -120,7 +120,7 @@ static bool add_neighbours(enf_sightings *sightings, const enf_portal_graph *gra
 // ---------------------------------------------------------------------------------------------- rungs
 
 static enf_status face(ladder *ladder, enf_error *error) {
-    const enf_workplace *place = place_for(ladder, "facing");
+    enf_workplace *place = place_for(ladder, "facing");
     if (!enf_shapes_make(&ladder->shapes, ladder->graph)) return enf_fail_memory(error, "the portals");
     enf_status status = enf_facing_find(&ladder->facing, &ladder->shapes, &place->crew, error);
     if (!status && ladder->options->method == ENF_METHOD_FACING)
@@ -134,7 +134,7 @@ static bool wants_sightings(const enf_visibility_options *options) {
 
 static enf_status cast(ladder *ladder, enf_error *error) {
     const enf_visibility_options *options = ladder->options;
-    const enf_workplace *place = place_for(ladder, "hourglass");
+    enf_workplace *place = place_for(ladder, "hourglass");
     bool wants_lines = wants_sightings(options);
     if (!enf_sight_make(&ladder->sight, &ladder->shapes) ||
         !enf_sightings_new(&ladder->sightings, wants_lines ? ladder->graph->cell_count : 0,
@@ -155,7 +155,7 @@ static enf_status cast(ladder *ladder, enf_error *error) {
 static enf_status settle(ladder *ladder, enf_error *error) {
     enf_visibility *visibility = ladder->visibility;
     enf_pvs *pvs = &visibility->pvs;
-    const enf_workplace *place = place_for(ladder, enf_method_name(ladder->options->method));
+    enf_workplace *place = place_for(ladder, enf_method_name(ladder->options->method));
     const enf_bits cells = {pvs->cell_count, pvs->row_words, pvs->rows};
     enf_settlement settlement = {.shapes = &ladder->shapes,
                                  .beams = &ladder->cast.beams,
@@ -235,6 +235,7 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
                                                                            ladder.cast.beams.row_words);
     visibility->visits = ladder.cast.visits;
     visibility->lines = ladder.cast.lines;
+    visibility->jobs_stored = ladder.place.stored;
     visibility->cells_budgeted = ladder.cast.cells_budgeted;
     enf_checkpoint_close(ladder.place.checkpoint);
     enf_sightings_free(&ladder.sightings);

@@ -60,6 +60,7 @@ typedef struct enf_visibility {
     int64_t pairs_open;     ///< lp and exact: pairs of cells that neither beams nor lines had decided
     int64_t nodes;          ///< lp and exact: portals that sequences came to
     enf_stab_counts stabs;  ///< lp and exact: what it took to decide sequences
+    int64_t jobs_stored;    ///< what the checkpoint had already: results for a cell
     int64_t cells_budgeted; ///< cells whose beams were too late for the budget
     int64_t pairs_budgeted; ///< pairs that were, and count as seen
 

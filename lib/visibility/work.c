@@ -29,6 +29,7 @@ static enf_status take_stored(enf_shop *shop, enf_error *error) {
                             "%s: what the checkpoint has of cell %" PRId32 " makes no sense; remove it",
                             enf_checkpoint_path(checkpoint), record->cell);
         shop->begun[record->cell] = true;
+        shop->place->stored++;
         shop->cost_done += work->cost[record->cell];
     }
     return ENF_OK;
@@ -58,7 +59,7 @@ static void work_alone(enf_shop *shop) {
     pthread_mutex_unlock(&shop->lock);
 }
 
-enf_status enf_work_run(const enf_work *work, const enf_workplace *place, bool *begun, enf_error *error) {
+enf_status enf_work_run(const enf_work *work, enf_workplace *place, bool *begun, enf_error *error) {
     enf_shop shop;
     memset(begun, 0, (size_t)work->cell_count * sizeof *begun);
     bool made = enf_shop_make(&shop, work, place, begun);

@@ -36,11 +36,12 @@ typedef struct enf_workplace {
     double deadline;            ///< on enf_timer_now's clock: no job begins later
     enf_checkpoint *checkpoint; ///< or null
     const enf_team *team;       ///< or null
+    int64_t stored;             ///< results that the checkpoint had
 } enf_workplace;
 
 /// Does all cells, the dearest first. *begun (per cell, the caller's) tells which have a result; the others'
 /// turn came after the deadline. In a team, all processes have all results afterwards. ENF_NO_RESOURCES when
 /// cancelled, without memory, or if the checkpoint cannot be written; ENF_BAD_INPUT for a wrong checkpoint.
-enf_status enf_work_run(const enf_work *work, const enf_workplace *place, bool *begun, enf_error *error);
+enf_status enf_work_run(const enf_work *work, enf_workplace *place, bool *begun, enf_error *error);
 
 #endif
