@@ -14,6 +14,7 @@
 #include "visibility/witness.h"
 
 #include <inttypes.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -112,9 +113,10 @@ static enf_status find(cli_pvs_result *result, const request *request, enf_error
     if (!request->leads)
         enf_fail(error, status, "rank %d: %.1000s", request->team->rank, why.text);
     else if (cli_was_interrupted())
-        enf_fail(error, ENF_NO_RESOURCES, "cancelled; %s was not written%s%s%s", request->output,
+        enf_fail(error, ENF_NO_RESOURCES, "%s; %s was not written%s%s",
+                 request->team ? "stopped: cancelled, or a process was lost" : "cancelled", request->output,
                  request->checkpoint ? "; the same command goes on from what is in " : "",
-                 request->checkpoint ? request->checkpoint : "", "");
+                 request->checkpoint ? request->checkpoint : "");
     return error->status;
 }
 
@@ -136,7 +138,12 @@ static void tell(const cli_pvs_result *result, const request *request) {
 }
 
 static void prepare(cli_pvs_result *result, const request *request, cli_progress *progress) {
-    if (request->leads) cli_progress_start(progress, (cli_progress_mode)request->progress);
+    if (request->leads) {
+        cli_progress_start(progress, (cli_progress_mode)request->progress);
+    } else { // rank 0 ends all when it is asked to
+        signal(SIGINT, SIG_IGN);
+        signal(SIGTERM, SIG_IGN);
+    }
     result->processes = request->team ? request->team->size : 1;
     result->options = (enf_visibility_options){.method = (enf_method)request->method,
                                                .threads = request->threads,
@@ -185,16 +192,35 @@ static int run(const request *request) {
     return (int)status;
 }
 
-static int check_and_run(const cli_syntax *syntax, const request *request) {
+static int check(const cli_syntax *syntax, const request *request) {
     const char *outputs[] = {request->output, request->report, request->witness, request->checkpoint};
     if (!request->output) return cli_misuse(syntax, "-o OUT is missing");
     if (request->verbose && request->quiet) return cli_misuse(syntax, "-v and -q contradict each other");
     if (request->checkpoint && strcmp(request->checkpoint, "-") == 0)
-        return cli_misuse(syntax, "--checkpoint needs a file");
+        return cli_misuse(syntax, "--checkpoint: '-' is no file that could be read again");
     const char *clash = cli_find_clash(&request->inputs, outputs, 4);
     if (clash)
         return cli_misuse(syntax, "'%.100s' would be written over; give every file a name of its own", clash);
-    return run(request);
+    return -1;
+}
+
+/// -1: go on. All processes have the same words; rank 0 alone complains of them.
+static int understand(const cli_syntax *syntax, int argc, char **argv, request *request) {
+    enf_bytes answer = {0};
+    int status = -1;
+    if (request->leads) {
+        status = cli_parse(syntax, argc, argv, &request->inputs);
+        if (status < 0) status = check(syntax, request);
+    }
+    if (request->team) {
+        if (request->leads) enf_put_word(&answer, (uint64_t)(status + 1), 1);
+        if (!request->team->share(request->team->user, &answer) || answer.count == 0)
+            status = ENF_NO_RESOURCES;
+        else
+            status = answer.data[0] - 1;
+        enf_bytes_free(&answer);
+    }
+    return status < 0 && !request->leads ? cli_parse(syntax, argc, argv, &request->inputs) : status;
 }
 
 /// The command of one process.
@@ -235,8 +261,8 @@ static int run_one(int argc, char **argv, const enf_team *team) {
         .operands_min = 1,
         .operands_max = 1,
         .operand = "the input file"};
-    int status = cli_parse(&syntax, argc, argv, &request.inputs);
-    if (status < 0) status = check_and_run(&syntax, &request);
+    int status = understand(&syntax, argc, argv, &request);
+    if (status < 0) status = run(&request);
     free(request.inputs.items);
     return status;
 }
