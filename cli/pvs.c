@@ -7,10 +7,11 @@
 #include "cli/job.h"
 #include "cli/paths.h"
 #include "cli/pvs_report.h"
-#include "enfilade/format.h"
+#include "enfilade/run.h"
 #include "format/output.h"
 #include "visibility/read_prt.h"
 #include "visibility/witness.h"
+#include "visibility/world_graph.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -24,27 +25,32 @@ typedef struct request {
     bool verbose, quiet;
 } request;
 
-/// The graph of a world file.
-static enf_status read_world(const enf_source *source, enf_error *error) {
-    return enf_fail(error, ENF_BAD_USAGE,
-                    "%s: visibility of compiled worlds is not built yet; give it a .prt file", source->name);
+/// The graph of a world file: its cells are those that it was compiled into.
+static enf_status read_world(enf_portal_graph *graph, const enf_source *source, enf_error *error) {
+    enf_world *world = NULL;
+    enf_status status = enf_world_open_memory(&world, source->data, source->size, NULL, error);
+    if (!status) status = enf_world_graph_make(graph, enf_world_file(world), error);
+    enf_world_close(world);
+    return status;
 }
 
 /// What kind of file it is, its content says.
 static enf_status read_graph(cli_pvs_result *result, const char *path, enf_error *error) {
     static const char magic[] = ENF_FILE_MAGIC;
     enf_source source;
+    bool is_world = false; // its cells need not be convex: no reason to warn
     enf_status status = enf_source_open(&source, path, error);
     if (!status) {
         result->input = strcmp(path, "-") == 0 ? "standard input" : path;
         result->input_hash = enf_hash64(source.data, source.size, 0);
-        if (source.size >= strlen(magic) && memcmp(source.data, magic, strlen(magic)) == 0)
-            status = read_world(&source, error);
+        is_world = source.size >= strlen(magic) && memcmp(source.data, magic, strlen(magic)) == 0;
+        if (is_world)
+            status = read_world(&result->graph, &source, error);
         else
             status = enf_read_prt(&result->graph, &source, error);
     }
     enf_source_close(&source);
-    if (!status) enf_portal_graph_find_non_convex(&result->graph);
+    if (!status && !is_world) enf_portal_graph_find_non_convex(&result->graph);
     return status;
 }
 
@@ -171,7 +177,8 @@ int cli_pvs(int argc, char **argv) {
         .command = "enfilade pvs",
         .usage = "IN.prt|WORLD.enf -o OUT [options]",
         .summary =
-            "Finds which cells see which, of a portal file (PRT1, PRT1-AM or PRT2, gzipped or not).\n"
+            "Finds which cells see which, of a portal file (PRT1, PRT1-AM or PRT2, gzipped or not)\n"
+            "or of a compiled world. Cells that are not convex see at least what they should.\n"
             "Line i of OUT, from 0 on, has the numbers of the cells that cell i sees, itself included.",
         .options = options,
         .operands_min = 1,

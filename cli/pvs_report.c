@@ -111,8 +111,7 @@ void cli_pvs_report_verbose(const cli_pvs_result *result, FILE *out) {
     const enf_visibility *visibility = &result->visibility;
     fprintf(out, "visibility     %8.3f s, %.3f s of processor time on %d threads\n", visibility->seconds,
             visibility->cpu_seconds, result->options.threads);
-    fprintf(out,
-            "beams          %8" PRId64 " portal pairs by %" PRId64 " visits; %" PRId64 " sight lines\n",
+    fprintf(out, "beams          %8" PRId64 " portal pairs by %" PRId64 " visits; %" PRId64 " sight lines\n",
             visibility->portal_pairs, visibility->visits, visibility->lines);
     fprintf(out,
             "sequences      %8" PRId64 " open pairs of cells by %" PRId64 " nodes, of which %" PRId64
