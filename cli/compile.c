@@ -6,6 +6,8 @@
 #include "cli/paths.h"
 #include "cli/report.h"
 #include "format/output.h"
+#include "format/save.h"
+#include "visibility/world_pvs.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -65,9 +67,32 @@ static void warn_of_leak(const cli_job *job, const char *path) {
         fputs("--leak FILE.pts (or .obj) writes the path\n", stderr);
 }
 
-static enf_status write_world(cli_job *job, const char *path, enf_error *error) {
+/// The stage of the recipe that the builder leaves to us: it works on what will be in the file.
+static enf_status find_visibility(cli_job *job, enf_image *image, cli_progress *progress, enf_error *error) {
+    if (job->settings->pvs == 0) return ENF_OK;
     double started = enf_timer_now(), cpu_started = enf_timer_cpu();
-    enf_status status = enf_build_write(&job->build, job->options_json, path, error);
+    const enf_visibility_options options = {.method = (enf_method)(job->settings->pvs - 1),
+                                            .threads = job->settings->threads,
+                                            .progress = cli_progress_report,
+                                            .progress_user = progress};
+    enf_status status = enf_world_pvs_add(image, &options, &job->visibility, error);
+    enf_stage_report *stage = &job->build.stages[job->build.stage_count - 1];
+    cli_stage_end(stage, started, cpu_started);
+    snprintf(stage->why, sizeof stage->why, "%" PRId64 " pairs of cells, by %s",
+             enf_pvs_pairs(&job->visibility.pvs), cli_pvs_methods[job->settings->pvs]);
+    job->seconds += stage->seconds;
+    return status;
+}
+
+static enf_status write_world(cli_job *job, const char *path, cli_progress *progress, enf_error *error) {
+    enf_image image;
+    enf_status status = enf_image_make(&image, &job->build, job->options_json, error);
+    if (status) return status;
+    status = find_visibility(job, &image, progress, error);
+    double started = enf_timer_now(), cpu_started = enf_timer_cpu();
+    cli_progress_report(progress, "write", 0);
+    if (!status) status = enf_view_save(&image.view, path, error);
+    enf_image_free(&image);
     struct stat about;
     if (!status && stat(path, &about) == 0 && S_ISREG(about.st_mode))
         job->file_size = (uint64_t)about.st_size;
@@ -94,8 +119,9 @@ static enf_status open_outputs(const request *request, outputs *outputs, enf_err
     return status;
 }
 
-static enf_status write_outputs(const request *request, cli_job *job, outputs *outputs, enf_error *error) {
-    enf_status status = write_world(job, request->output, error);
+static enf_status write_outputs(const request *request, cli_job *job, outputs *outputs,
+                                cli_progress *progress, enf_error *error) {
+    enf_status status = write_world(job, request->output, progress, error);
     if (!status && request->leak && job->build.regions.leak) {
         print_leak(job, request->leak, outputs->leak.file);
         status = enf_output_commit(&outputs->leak, error);
@@ -116,9 +142,8 @@ static int compile(const request *request) {
     enf_status status = cli_job_prepare(&job, &request->settings, &error);
     if (!status) status = open_outputs(request, &outputs, &error);
     if (!status) status = cli_job_run(&job, &request->inputs, &progress, &error);
-    if (!status) cli_progress_report(&progress, "write", 0);
     if (!status && cli_was_interrupted()) status = ENF_NO_RESOURCES;
-    if (!status) status = write_outputs(request, &job, &outputs, &error);
+    if (!status) status = write_outputs(request, &job, &outputs, &progress, &error);
     cli_progress_stop(&progress);
     enf_output_discard(&outputs.report);
     enf_output_discard(&outputs.leak);

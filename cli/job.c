@@ -94,9 +94,6 @@ enf_status cli_job_prepare(cli_job *job, const cli_settings *settings, enf_error
     options->threads = settings->threads;
     options->memory = settings->memory;
     options->measure_resident = true;
-    if (settings->pvs != 0)
-        return enf_fail(error, ENF_BAD_USAGE, "--pvs %s: visibility is not built yet; leave --pvs out",
-                        cli_pvs_methods[settings->pvs]);
     if (options->tetrahedralizer == ENF_TETRAHEDRALIZER_TETGEN && !enf_shim_has_tetgen())
         return enf_fail(error, ENF_BAD_USAGE,
                         "--tetrahedralizer tetgen: this build has no TetGen; use own or cgal, or build with "
@@ -159,6 +156,7 @@ void cli_stage_end(enf_stage_report *stage, double started, double cpu_started) 
 void cli_job_free(cli_job *job) {
     free(job->options_json);
     enf_build_free(&job->build);
+    enf_visibility_free(&job->visibility);
     *job = (cli_job){0};
 }
 

@@ -6,6 +6,7 @@
 #include "build/build.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "visibility/visibility.h"
 
 /// The options that shape the result. Start with cli_settings_default.
 typedef struct cli_settings {
@@ -28,52 +29,53 @@ extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const
                                                                               *const cli_pvs_methods[];
 
 /// Rows of an option table that fill the cli_settings `s`.
-#define CLI_SETTINGS_OPTIONS(s)                                                                                \
-    {"--tetrahedralizer",  0,                                                                                  \
-     CLI_CHOICE,           &(s).tetrahedralizer,                                                               \
-     "own|cgal|tetgen",    "default own; cgal makes the same",                                                 \
-     cli_tetrahedralizers, false},                                                                             \
-        {"--heuristic",  0,    CLI_CHOICE, &(s).heuristic, "NAME", "aspect (default) or aspect-scaled",        \
-         cli_heuristics, false},                                                                               \
-        {"--stop", 0, CLI_TEXT, &(s).stop, "RULE", "auto (default), weight=W or cells=N", NULL, false},        \
-        {"--keep",  0,      CLI_CHOICE,                                                                        \
-         &(s).keep, "RULE", "regions to keep: auto (default), all, outside, spawn",                            \
-         cli_keeps, false},                                                                                    \
-        {"--spawn", 0,    CLI_POINTS, &(s).spawns, "X,Y,Z", "a point that is in a room; may be repeated",      \
-         NULL,      false},                                                                                    \
-        {"--pvs",         0,    CLI_CHOICE, &(s).pvs, "METHOD", "none (default); visibility is not built yet", \
-         cli_pvs_methods, false},                                                                              \
-        {"--exclude",  0,      CLI_TEXTS,                                                                      \
-         &(s).exclude, "GLOB", "leave out groups whose name matches; may be repeated",                         \
-         NULL,         false},                                                                                 \
-        {"--detail",  0,      CLI_TEXTS,                                                                       \
-         &(s).detail, "GLOB", "groups that are drawn but do not cut; may be repeated",                         \
-         NULL,        false},                                                                                  \
-        {"--weld",  0,    CLI_LENGTH,                                                                          \
-         &(s).weld, "D",  "corners closer than D become one; default 1e-9 of the diagonal",                    \
-         NULL,      false},                                                                                    \
-        {"--plane-tolerance",                                                                                  \
-         0,                                                                                                    \
-         CLI_LENGTH,                                                                                           \
-         &(s).plane_tolerance,                                                                                 \
-         "D",                                                                                                  \
-         "how far points may move to be coplanar again; default 2e-7 of the diagonal",                         \
-         NULL,                                                                                                 \
-         false},                                                                                               \
-        {"--plain-cells",                                                                                      \
-         0,                                                                                                    \
-         CLI_FLAG,                                                                                             \
-         &(s).plain_cells,                                                                                     \
-         NULL,                                                                                                 \
-         "leave fine cells as the cuts make them; otherwise convex ones are joined",                           \
-         NULL,                                                                                                 \
-         false},                                                                                               \
-        {"--memory",  0,      CLI_BYTES,                                                                       \
-         &(s).memory, "SIZE", "refuse what will need more, as 16G; default: what the system allows",           \
-         NULL,        false},                                                                                  \
-    {                                                                                                          \
-        "--threads", 0, CLI_COUNT, &(s).threads, "N", "default: one per core; the result is the same", NULL,   \
-            false                                                                                              \
+#define CLI_SETTINGS_OPTIONS(s)                                                                              \
+    {"--tetrahedralizer",  0,                                                                                \
+     CLI_CHOICE,           &(s).tetrahedralizer,                                                             \
+     "own|cgal|tetgen",    "default own; cgal makes the same",                                               \
+     cli_tetrahedralizers, false},                                                                           \
+        {"--heuristic",  0,    CLI_CHOICE, &(s).heuristic, "NAME", "aspect (default) or aspect-scaled",      \
+         cli_heuristics, false},                                                                             \
+        {"--stop", 0, CLI_TEXT, &(s).stop, "RULE", "auto (default), weight=W or cells=N", NULL, false},      \
+        {"--keep",  0,      CLI_CHOICE,                                                                      \
+         &(s).keep, "RULE", "regions to keep: auto (default), all, outside, spawn",                          \
+         cli_keeps, false},                                                                                  \
+        {"--spawn", 0,    CLI_POINTS, &(s).spawns, "X,Y,Z", "a point that is in a room; may be repeated",    \
+         NULL,      false},                                                                                  \
+        {"--pvs",         0,        CLI_CHOICE,                                                              \
+         &(s).pvs,        "METHOD", "none (default), reach, facing, hourglass, lp, exact",                   \
+         cli_pvs_methods, false},                                                                            \
+        {"--exclude",  0,      CLI_TEXTS,                                                                    \
+         &(s).exclude, "GLOB", "leave out groups whose name matches; may be repeated",                       \
+         NULL,         false},                                                                               \
+        {"--detail",  0,      CLI_TEXTS,                                                                     \
+         &(s).detail, "GLOB", "groups that are drawn but do not cut; may be repeated",                       \
+         NULL,        false},                                                                                \
+        {"--weld",  0,    CLI_LENGTH,                                                                        \
+         &(s).weld, "D",  "corners closer than D become one; default 1e-9 of the diagonal",                  \
+         NULL,      false},                                                                                  \
+        {"--plane-tolerance",                                                                                \
+         0,                                                                                                  \
+         CLI_LENGTH,                                                                                         \
+         &(s).plane_tolerance,                                                                               \
+         "D",                                                                                                \
+         "how far points may move to be coplanar again; default 2e-7 of the diagonal",                       \
+         NULL,                                                                                               \
+         false},                                                                                             \
+        {"--plain-cells",                                                                                    \
+         0,                                                                                                  \
+         CLI_FLAG,                                                                                           \
+         &(s).plain_cells,                                                                                   \
+         NULL,                                                                                               \
+         "leave fine cells as the cuts make them; otherwise convex ones are joined",                         \
+         NULL,                                                                                               \
+         false},                                                                                             \
+        {"--memory",  0,      CLI_BYTES,                                                                     \
+         &(s).memory, "SIZE", "refuse what will need more, as 16G; default: what the system allows",         \
+         NULL,        false},                                                                                \
+    {                                                                                                        \
+        "--threads", 0, CLI_COUNT, &(s).threads, "N", "default: one per core; the result is the same", NULL, \
+            false                                                                                            \
     }
 
 typedef struct cli_job {
@@ -81,6 +83,7 @@ typedef struct cli_job {
     enf_build_options options;
     char *options_json; ///< what shapes the result, on one line
     enf_build build;
+    enf_visibility visibility; ///< if settings->pvs is not "none"
     enf_stage_report read, write;
     double seconds;
     uint64_t peak_bytes, file_size;

@@ -8,10 +8,11 @@
 #include "cli/paths.h"
 #include "cli/pvs_report.h"
 #include "cli/pvs_team.h"
-#include "enfilade/format.h"
+#include "enfilade/run.h"
 #include "format/output.h"
 #include "visibility/read_prt.h"
 #include "visibility/witness.h"
+#include "visibility/world_graph.h"
 
 #include <inttypes.h>
 #include <signal.h>
@@ -29,34 +30,41 @@ typedef struct request {
     bool leads;           ///< alone, or rank 0: it reads, writes and speaks
 } request;
 
-/// The graph of a world file.
-static enf_status read_world(const enf_source *source, enf_error *error) {
-    return enf_fail(error, ENF_BAD_USAGE,
-                    "%s: visibility of compiled worlds is not built yet; give it a .prt file", source->name);
+/// The graph of a world file: its cells are those that it was compiled into.
+static enf_status read_world(enf_portal_graph *graph, const enf_source *source, enf_error *error) {
+    enf_world *world = NULL;
+    enf_status status = enf_world_open_memory(&world, source->data, source->size, NULL, error);
+    if (!status) status = enf_world_graph_make(graph, enf_world_file(world), error);
+    enf_world_close(world);
+    return status;
 }
 
 /// What kind of file it is, its content says.
 static enf_status read_graph(cli_pvs_result *result, enf_source *source, enf_error *error) {
     static const char magic[] = ENF_FILE_MAGIC;
+    bool is_world = source->size >= strlen(magic) && memcmp(source->data, magic, strlen(magic)) == 0;
     result->input_hash = enf_hash64(source->data, source->size, 0);
-    enf_status status = source->size >= strlen(magic) && memcmp(source->data, magic, strlen(magic)) == 0
-                            ? read_world(source, error)
-                            : enf_read_prt(&result->graph, source, error);
+    if (is_world) return read_world(&result->graph, source, error); // its cells need not be convex
+    enf_status status = enf_read_prt(&result->graph, source, error);
     if (!status) enf_portal_graph_find_non_convex(&result->graph);
     return status;
 }
+
+enum { SHARED_HEADER = 16 }; ///< world files must be aligned
 
 /// The others get the source from rank 0: first its status, then, if that is fine, the bytes, into *bytes.
 static enf_status share_source(const enf_team *team, enf_status status, enf_source *source, enf_bytes *bytes,
                                enf_error *error) {
     const char *name = source->name;
     if (team->rank == 0) {
-        enf_put_word(bytes, status, 1);
+        enf_put_word(bytes, status, 8);
+        enf_put_word(bytes, 0, SHARED_HEADER - 8);
         if (!status) enf_put_bytes(bytes, source->data, source->size + 1);
     }
     if (bytes->failed || !team->share(team->user, bytes)) return enf_fail_memory(error, "the input");
     if (team->rank == 0 || bytes->data[0]) return (enf_status)bytes->data[0];
-    return enf_source_over(source, name, (const char *)bytes->data + 1, bytes->count - 2, error);
+    return enf_source_over(source, name, (const char *)bytes->data + SHARED_HEADER,
+                           bytes->count - SHARED_HEADER - 1, error);
 }
 
 /// Reads the input, unless something failed before. All processes come to the same; rank 0 alone has words
@@ -255,7 +263,8 @@ static int run_one(int argc, char **argv, const enf_team *team) {
         .command = "enfilade pvs",
         .usage = "IN.prt|WORLD.enf -o OUT [options]",
         .summary =
-            "Finds which cells see which, of a portal file (PRT1, PRT1-AM or PRT2, gzipped or not).\n"
+            "Finds which cells see which, of a portal file (PRT1, PRT1-AM or PRT2, gzipped or not)\n"
+            "or of a compiled world. Cells that are not convex see at least what they should.\n"
             "Line i of OUT, from 0 on, has the numbers of the cells that cell i sees, itself included.",
         .options = options,
         .operands_min = 1,

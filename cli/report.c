@@ -138,7 +138,7 @@ static void put_graph(enf_json *json, const cli_job *job, const cli_counts *coun
     enf_json_whole(json, "spawns_in_cells", counts->spawns_in_cells);
     enf_json_begin_object(json, "pvs");
     enf_json_text(json, "method", cli_pvs_methods[job->settings->pvs]);
-    enf_json_whole(json, "pairs", 0);
+    enf_json_whole(json, "pairs", job->settings->pvs ? enf_pvs_pairs(&job->visibility.pvs) : 0);
     enf_json_end_object(json);
     enf_json_bool(json, "leak", build->regions.leak);
     if (build->regions.leak) {

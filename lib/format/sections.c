@@ -45,6 +45,10 @@ const enf_section_spec enf_section_specs[] = {
     SECTION("GROUP",    GEOMETRY, GROUPS,             0, NONE,      NONE,          0, group_names),
     SECTION("MATERIAL", GEOMETRY, MATERIALS,          0, NONE,      NONE,          0, material_names),
 
+    SECTION("PVS",      PVS,      NONE,               0, NONE,      NONE,          0, pvs),
+    SECTION("PVSOFF",   PVS,      CELLS,              1, OFFSETS64, PVS_BYTES,     0, pvs_offset),
+    SECTION("PVSROW",   PVS,      PVS_BYTES,          0, NONE,      NONE,          0, pvs_rows),
+
     SECTION("VXPLANE",  EXACT,    VERTICES,           0, INDEX,     PLANES,       -1, vertex_planes),
     SECTION("VXPOS",    EXACT,    VERTICES,           0, GRID,      NONE,          0, vertex_position),
     SECTION("FINEFACT", EXACT,    FINE,               1, OFFSETS32, FINE_FACETS,   0, fine_facet),
@@ -119,6 +123,7 @@ static const struct {
     [ENF_DIMENSION_CELL_TRIANGLES] = COUNT(cell_triangle_count),
     [ENF_DIMENSION_GROUPS] = COUNT(group_count),
     [ENF_DIMENSION_MATERIALS] = COUNT(material_count),
+    [ENF_DIMENSION_PVS_BYTES] = COUNT(pvs_byte_count),
 };
 
 int64_t enf_view_count(const enf_file_view *view, enf_dimension dimension) {

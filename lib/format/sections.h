@@ -45,6 +45,7 @@ typedef enum enf_dimension {
     ENF_DIMENSION_CELL_TRIANGLES,
     ENF_DIMENSION_GROUPS,
     ENF_DIMENSION_MATERIALS,
+    ENF_DIMENSION_PVS_BYTES,
     ENF_DIMENSION_COUNT
 } enf_dimension;
 
@@ -55,6 +56,7 @@ typedef enum enf_part {
     ENF_PART_CORE,
     ENF_PART_EXACT,
     ENF_PART_GEOMETRY,
+    ENF_PART_PVS,
     ENF_PART_OPTIONAL,
     ENF_PART_NEEDED
 } enf_part;

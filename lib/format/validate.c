@@ -4,6 +4,7 @@
 // check`.
 #include "format/read.h"
 
+#include "format/pvs_row.h"
 #include "format/sections.h"
 
 #include <math.h>
@@ -325,6 +326,19 @@ static enf_status check_geometry(checker *check) {
     return ENF_OK;
 }
 
+static enf_status check_pvs(checker *check) {
+    const enf_file_view *view = check->view;
+    if (!view->pvs) return ENF_OK;
+    if (view->pvs->method >= ENF_FILE_PVS_METHODS) return element_fails(check->error, "PVS", 0);
+    for (int32_t i = 0; i < view->cell_count; i++) {
+        const int64_t *offset = &view->pvs_offset[i];
+        if (!enf_pvs_row_decode(view->pvs_rows + offset[0], (size_t)(offset[1] - offset[0]), NULL,
+                                view->cell_count))
+            return element_fails(check->error, "PVSROW", offset[0]);
+    }
+    return ENF_OK;
+}
+
 enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
     for (int i = 0; i < enf_section_spec_count; i++) {
         const enf_section_spec *spec = &enf_section_specs[i];
@@ -332,9 +346,9 @@ enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
         int64_t bad = find_bad_element(view, spec);
         if (bad >= 0) return element_fails(error, spec->tag, bad);
     }
-    static enf_status (*const checks[])(checker *) = {check_head,      check_regions, check_portals,
-                                                      check_cells,     check_planes,  check_boxes,
-                                                      check_cut_trees, check_exact,   check_geometry};
+    static enf_status (*const checks[])(checker *) = {
+        check_head,  check_regions,   check_portals, check_cells,    check_planes,
+        check_boxes, check_cut_trees, check_exact,   check_geometry, check_pvs};
     checker check = {view, error};
     for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
         enf_status status = checks[i](&check);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double relative_tolerance = 0x1p-36;
+static const double relative_tolerance = 0x1p-42;
 
 /// A winding without an area has no plane: nothing is behind it, nothing is in front.
 static void make_plane(enf_shape *shape, const double (*corners)[3], int32_t count) {

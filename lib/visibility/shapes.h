@@ -20,7 +20,7 @@ typedef struct enf_shapes {
     bool *cell_is_convex;          ///< per cell
 
     // World units, both.
-    double tolerance; ///< of windows and planes: 2^-36 of the largest coordinate, and how far windings are
+    double tolerance; ///< of windows and planes: 2^-42 of the largest coordinate, and how far windings are
                       ///< from planar; a power of two times that of a world of another scale
     double extent;    ///< no two corners are farther apart
 } enf_shapes;

@@ -12,7 +12,7 @@
 
 #define ENF_FILE_MAGIC "ENFILADE"            ///< 8 bytes, no terminating zero in the file
 #define ENF_FILE_MAJOR 2                     ///< a reader refuses another major version
-#define ENF_FILE_MINOR 0                     ///< a reader accepts any minor version of its major one
+#define ENF_FILE_MINOR 1                     ///< a reader accepts any minor version of its major one
 #define ENF_FILE_ALIGNMENT 16                ///< sections begin at multiples of this
 #define ENF_FILE_GRID_MAX 9007199254740992.0 ///< 2^53: no grid coordinate is larger in magnitude
 
@@ -126,6 +126,22 @@ typedef struct enf_file_portal_polygon {
     int32_t loop;                       ///< the exact polygon: portal_loop_* of the view
     int32_t reserved;
 } enf_file_portal_polygon;
+
+/// How the visible set was found: the rungs of the ladder, each within the one before.
+typedef enum enf_file_pvs_method {
+    ENF_FILE_PVS_REACH,
+    ENF_FILE_PVS_FACING,
+    ENF_FILE_PVS_HOURGLASS,
+    ENF_FILE_PVS_LP,
+    ENF_FILE_PVS_EXACT,
+    ENF_FILE_PVS_METHODS
+} enf_file_pvs_method;
+
+typedef struct enf_file_pvs {
+    uint32_t method; ///< enf_file_pvs_method
+    uint32_t reserved;
+    int64_t pairs; ///< directed, every cell with itself included
+} enf_file_pvs;
 
 /// A node of the bounding volume hierarchy over tetrahedra, in depth-first order: walk forward, and where the
 /// point is outside the box jump to `next`. A leaf holds one tetrahedron.
@@ -245,6 +261,12 @@ typedef struct enf_file_view {
     const enf_file_corner *portal_loop_corners;
     const int32_t *portal_loop_plane;
     const uint8_t *portal_loop_side; ///< 1: the higher cell lies in front of the plane; 0: the lower does
+
+    // The visible set (all or nothing).
+    const enf_file_pvs *pvs;   ///< null: there is none
+    const int64_t *pvs_offset; ///< cell_count + 1 offsets into pvs_rows
+    int64_t pvs_byte_count;
+    const uint8_t *pvs_rows; ///< per cell the cells it sees, coded: lib/format/layout.md
 
     // What is drawn (all or nothing), world coordinates.
     bool has_geometry;
