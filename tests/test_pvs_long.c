@@ -177,6 +177,36 @@ static void a_damaged_checkpoint_costs_only_what_is_damaged(void **state) {
     free(bytes);
 }
 
+static void sign(char *record) {
+    uint32_t length;
+    memcpy(&length, record + 20, sizeof length);
+    uint64_t hash = enf_hash64(record, 24, enf_hash64(record + RECORD, length, 0));
+    for (int k = 0; k < 8; k++) record[24 + k] = (char)(hash >> 8 * k);
+}
+
+/// Results that went by other beams, even if they made sense, are not taken.
+static void results_with_another_key_are_passed_over(void **state) {
+    (void)state;
+    size_t size;
+    int records = 0;
+    leave_checkpoint(KEPT, "kept.ck", 4000);
+    char *bytes = read_file("kept.ck", &size);
+    for (char *at = bytes + HEADER; at < bytes + size; records++) {
+        uint32_t length;
+        memcpy(&length, at + 20, sizeof length);
+        at[8] ^= 1;
+        if (length > 0) at[RECORD] ^= 1;
+        sign(at);
+        at += RECORD + length;
+    }
+    assert_true(records > 10);
+    write_file("kept.ck", bytes, size);
+    expect(KEPT, 0, "kept.txt: ");
+    assert_int_equal(report_value("kept.json", "jobs_stored"), 0);
+    assert_same_file("whole.txt", "kept.txt");
+    free(bytes);
+}
+
 /// Damages results and signs them anew: nonsense is told from sense, or at least does no harm.
 static void results_that_make_no_sense_are_refused(void **state) {
     (void)state;
@@ -191,8 +221,7 @@ static void results_that_make_no_sense_are_refused(void **state) {
         size_t at = RECORD + (size_t)i % length;
         char kept = record[at];
         record[at] ^= (char)(0x80 >> i % 3);
-        uint64_t hash = enf_hash64(record, 24, enf_hash64(record + RECORD, length, 0));
-        for (int k = 0; k < 8; k++) record[24 + k] = (char)(hash >> 8 * k);
+        sign(record);
         write_file("kept.ck", bytes, size);
         process ran = run_enfilade(NULL, KEPT);
         assert_true(ran.status == 0 || ran.status == 3);
@@ -354,6 +383,7 @@ int main(void) {
         cmocka_unit_test(a_killed_run_goes_on_where_it_was),
         cmocka_unit_test(a_killed_run_of_a_level_goes_on_where_it_was),
         cmocka_unit_test(a_damaged_checkpoint_costs_only_what_is_damaged),
+        cmocka_unit_test(results_with_another_key_are_passed_over),
         cmocka_unit_test(results_that_make_no_sense_are_refused),
         cmocka_unit_test(a_checkpoint_of_something_else_is_left_alone),
         cmocka_unit_test(the_path_and_the_threads_do_not_matter),
