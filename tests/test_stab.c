@@ -54,12 +54,16 @@ typedef struct passage {
     int edge_count;
 } passage;
 
+static bool same_point(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 static void add_portal(passage *p, const double (*corners)[3], int count, bool turned) {
     assert_true(enf_portal_graph_add(&p->graph, 0, 1, corners, count));
     p->sequence[p->count] = 2 * p->count + turned;
     p->count++;
     for (int i = 0, before = count - 1; i < count; before = i++) {
-        if (memcmp(corners[before], corners[i], sizeof *corners) == 0) continue;
+        if (same_point(corners[before], corners[i])) continue;
         oracle_edge *edge = &p->edges[p->edge_count++];
         memcpy(edge->a, corners[turned ? i : before], sizeof edge->a);
         memcpy(edge->b, corners[turned ? before : i], sizeof edge->b);

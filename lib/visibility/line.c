@@ -16,6 +16,10 @@ static void subtract(const double a[3], const double b[3], double difference[3])
     for (int i = 0; i < 3; i++) difference[i] = a[i] - b[i];
 }
 
+static bool same_point(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; // -0 is 0
+}
+
 /// Sign of det(along, a - from, b - from), or 0 if doubles cannot tell.
 static int side_quickly(const double along[3], const double a[3], const double b[3]) {
     double sum = 0, magnitude = 0;
@@ -43,7 +47,7 @@ int enf_line_passes_quickly(const enf_line *line, const enf_portal_graph *graph,
         if (side == -wanted) return -1;
         if (side == wanted)
             edges++;
-        else if (memcmp(graph->corners[i], graph->corners[before], sizeof *graph->corners) != 0)
+        else if (!same_point(graph->corners[i], graph->corners[before]))
             unsure++;
         memcpy(a, b, sizeof a);
     }
@@ -79,7 +83,7 @@ static bool passes_exactly(const enf_line *line, const enf_portal_graph *graph, 
     int edges = 0;
     for (int32_t i = first, before = end - 1; i < end; before = i++) {
         const double *a = graph->corners[before], *b = graph->corners[i];
-        if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]) continue;
+        if (same_point(a, b)) continue;
         if (side_exactly(line, a, b) != (portal & 1 ? -1 : 1)) return false;
         edges++;
     }
