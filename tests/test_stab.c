@@ -262,7 +262,6 @@ static void answers_are_the_oracles(void **unused) {
     tally sum[KINDS] = {{0}};
     for (long i = 0; i < cases; i++) {
         passage *p = random_passage((int)(i % KINDS), &state);
-        if (getenv("VERBOSE")) print_message("case %ld\n", i);
         check_passage(p, &sum[i % KINDS]);
         destroy(p);
     }
@@ -279,9 +278,221 @@ static void answers_are_the_oracles(void **unused) {
     }
 }
 
+// ---- What must not change an answer ----
+
+static enf_stab_answer answer_of(passage *p, const int32_t *sequence, const enf_line *hint, bool exact) {
+    enf_stab stab;
+    if (exact)
+        assert_int_equal(enf_stab_exact(p->stabber, sequence, p->count, hint, &stab, NULL), ENF_OK);
+    else
+        assert_int_equal(enf_stab_lp(p->stabber, sequence, p->count, hint, &stab, NULL), ENF_OK);
+    for (int i = 0; stab.has_line && i < p->count; i++)
+        assert_true(enf_line_passes(&stab.line, &p->graph, sequence[i]));
+    return stab.answer;
+}
+
+static bool same_answer(enf_stab_answer a, enf_stab_answer b) {
+    return (a == ENF_STAB_HIDDEN) == (b == ENF_STAB_HIDDEN);
+}
+
+/// The other way round through the twins; in another order; with any hint.
+static void neither_order_nor_hint_matters(void **unused) {
+    (void)unused;
+    uint64_t state = seed + 1;
+    const long cases = scaled(5000);
+    for (long i = 0; i < cases; i++) {
+        passage *p = random_passage((int)(i % KINDS), &state);
+        const enf_stab_answer relaxed = answer_of(p, p->sequence, NULL, false),
+                              exact = answer_of(p, p->sequence, NULL, true);
+        int32_t back[LENGTH], mixed[LENGTH];
+        for (int k = 0; k < p->count; k++) {
+            back[k] = p->sequence[p->count - 1 - k] ^ 1;
+            const int at = between(&state, 0, k);
+            mixed[k] = mixed[at];
+            mixed[at] = p->sequence[k];
+        }
+        enf_line hint;
+        for (int k = 0; k < 3; k++) {
+            hint.from[k] = 300 * real(&state);
+            hint.to[k] = between(&state, 0, 9) ? 300 * real(&state) : hint.from[k];
+        }
+        assert_true(same_answer(relaxed, answer_of(p, back, NULL, false)));
+        assert_true(same_answer(relaxed, answer_of(p, mixed, &hint, false)));
+        assert_true(same_answer(exact, answer_of(p, back, &hint, true)));
+        assert_true(same_answer(exact, answer_of(p, mixed, NULL, true)));
+        destroy(p);
+    }
+}
+
+/// All coordinates times powers of two, which may leave the range in which doubles are trusted.
+static void scale_does_not_matter(void **unused) {
+    (void)unused;
+    uint64_t state = seed + 2;
+    const long cases = scaled(2000);
+    for (long i = 0; i < cases; i++) {
+        passage *p = random_passage((int)(i % KINDS), &state);
+        const enf_stab_answer relaxed = answer_of(p, p->sequence, NULL, false),
+                              exact = answer_of(p, p->sequence, NULL, true);
+        const int shift = between(&state, -900, 1000);
+        for (int32_t k = 0; k < p->graph.opening_corner[p->count]; k++) {
+            for (int j = 0; j < 3; j++) p->graph.corners[k][j] = ldexp(p->graph.corners[k][j], shift);
+        }
+        enf_pluecker_free(&p->pluecker);
+        assert_true(enf_pluecker_make(&p->pluecker, &p->graph));
+        assert_true(same_answer(relaxed, answer_of(p, p->sequence, NULL, false)));
+        assert_true(same_answer(exact, answer_of(p, p->sequence, NULL, true)));
+        destroy(p);
+    }
+}
+
+static double any_finite(uint64_t *state) {
+    const uint64_t bits = next_random(state);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return isfinite(value) ? value : 0;
+}
+
+/// Windings of nonsense, with huge and tiny numbers side by side.
+static void any_finite_doubles_are_answered(void **unused) {
+    (void)unused;
+    uint64_t state = seed + 3;
+    const long cases = scaled(300);
+    for (long i = 0; i < cases; i++) {
+        passage *p = calloc(1, sizeof *p);
+        assert_non_null(p);
+        const int length = between(&state, 1, 4), mostly = between(&state, 0, 1);
+        for (int k = 0; k < length; k++) {
+            double corner[4][3];
+            const int corners = between(&state, 3, 4);
+            for (int c = 0; c < 3 * corners; c++)
+                corner[c / 3][c % 3] =
+                    between(&state, 0, 3 * mostly) ? between(&state, -2, 2) : any_finite(&state);
+            add_portal(p, (const double(*)[3])corner, corners, between(&state, 0, 1));
+        }
+        finish(p);
+        enf_line hint;
+        for (int k = 0; k < 3; k++) {
+            hint.from[k] = any_finite(&state);
+            hint.to[k] = any_finite(&state);
+        }
+        const enf_stab_answer relaxed = answer_of(p, p->sequence, &hint, false);
+        if (p->edge_count)
+            assert_int_equal(relaxed != ENF_STAB_HIDDEN, oracle_stab_program(p->edges, p->edge_count));
+        if (relaxed == ENF_STAB_HIDDEN)
+            assert_int_equal(answer_of(p, p->sequence, NULL, true), ENF_STAB_HIDDEN);
+        destroy(p);
+    }
+}
+
+// ---- Lines ----
+
+/// Small whole numbers, so that many lines touch; then moved off by the last bit.
+static void lines_pass_as_the_oracle_says(void **unused) {
+    (void)unused;
+    uint64_t state = seed + 4;
+    const long cases = scaled(50000);
+    long passing = 0;
+    for (long i = 0; i < cases; i++) {
+        passage *p = calloc(1, sizeof *p);
+        assert_non_null(p);
+        triangles(p, 1, 3, &state);
+        enf_line line;
+        for (int k = 0; k < 3; k++) {
+            line.from[k] = between(&state, -3, 3);
+            line.to[k] = between(&state, -3, 3);
+            if (between(&state, 0, 3) == 0) line.to[k] = nextafter(line.to[k], HUGE_VAL);
+        }
+        const bool passes = p->edge_count && oracle_stab_passes(p->edges, p->edge_count, line.from, line.to);
+        const int quickly = enf_line_passes_quickly(&line, &p->graph, p->sequence[0]);
+        assert_int_equal(enf_line_passes(&line, &p->graph, p->sequence[0]), passes);
+        assert_true(quickly == 0 || (quickly > 0) == passes);
+        passing += passes;
+        destroy(p);
+    }
+    assert_true(passing > cases / 100);
+}
+
+// ---- Known ----
+
+static passage *passage_of(int count, const double (*corners)[4][3]) {
+    passage *p = calloc(1, sizeof *p);
+    assert_non_null(p);
+    for (int i = 0; i < count; i++) add_portal(p, corners[i], 4, false);
+    finish(p);
+    return p;
+}
+
+static void expect(passage *p, enf_stab_answer relaxed, enf_stab_answer exact) {
+    assert_int_equal(answer_of(p, p->sequence, NULL, false) == ENF_STAB_HIDDEN, relaxed == ENF_STAB_HIDDEN);
+    assert_int_equal(answer_of(p, p->sequence, NULL, true), exact);
+    destroy(p);
+}
+
+#define DOOR(low_x, low_y, high_x, high_y, z)                         \
+    {                                                                 \
+        {low_x, low_y, z}, {high_x, low_y, z}, {high_x, high_y, z}, { \
+            low_x, high_y, z                                          \
+        }                                                             \
+    }
+
+static void one_portal_is_always_passed(void **unused) {
+    (void)unused;
+    expect(passage_of(1, (const double[1][4][3]){DOOR(0, 0, 1, 1, 0)}), ENF_STAB_OPEN, ENF_STAB_VISIBLE);
+    expect(passage_of(1, (const double[1][4][3]){DOOR(0, 0, 0x1p-40, 0x1p40, 7)}), ENF_STAB_OPEN,
+           ENF_STAB_VISIBLE);
+}
+
+static void a_portal_and_its_twin_are_not_passed_together(void **unused) {
+    (void)unused;
+    passage *p = passage_of(2, (const double[2][4][3]){DOOR(0, 0, 1, 1, 0), DOOR(0, 0, 1, 1, 1)});
+    p->sequence[1] = 1;
+    expect(p, ENF_STAB_HIDDEN, ENF_STAB_HIDDEN);
+}
+
+/// In one plane, two doors with a common edge; one in the other; and two with nothing in common.
+static void doors_in_one_plane_need_common_area(void **unused) {
+    (void)unused;
+    expect(passage_of(2, (const double[2][4][3]){DOOR(0, 0, 1, 1, 0), DOOR(1, 0, 2, 1, 0)}), ENF_STAB_HIDDEN,
+           ENF_STAB_HIDDEN);
+    expect(passage_of(2, (const double[2][4][3]){DOOR(0, 0, 3, 3, 0), DOOR(1, 1, 2, 2, 0)}), ENF_STAB_OPEN,
+           ENF_STAB_VISIBLE);
+    expect(passage_of(2, (const double[2][4][3]){DOOR(0, 0, 1, 1, 0), DOOR(5, 0, 6, 1, 0)}), ENF_STAB_HIDDEN,
+           ENF_STAB_HIDDEN);
+}
+
+/// Three doors whose only common lines lie in the plane x = 1: they would have to touch two edges.
+static void touching_is_not_passing(void **unused) {
+    (void)unused;
+    expect(
+        passage_of(3, (const double[3][4][3]){DOOR(0, 0, 1, 1, 0), DOOR(1, 0, 2, 1, 1), DOOR(0, 0, 1, 1, 2)}),
+        ENF_STAB_HIDDEN, ENF_STAB_HIDDEN);
+    const double more = 1 + 0x1p-52;
+    expect(passage_of(3, (const double[3][4][3]){DOOR(0, 0, more, 1, 0), DOOR(1, 0, 2, 1, 1),
+                                                 DOOR(0, 0, more, 1, 2)}),
+           ENF_STAB_OPEN, ENF_STAB_VISIBLE);
+}
+
+static void equal_corners_are_no_edge(void **unused) {
+    (void)unused;
+    const double twice[2][4][3] = {{{0, 0, 0}, {1, 0, 0}, {1, 0, -0.0}, {0, 1, 0}}, DOOR(0, 0, 1, 1, 1)};
+    expect(passage_of(2, twice), ENF_STAB_OPEN, ENF_STAB_VISIBLE);
+    const double nothing[1][4][3] = {DOOR(1, 1, 1, 1, 1)}, flat[1][4][3] = {DOOR(0, 1, 1, 1, 1)};
+    expect(passage_of(1, nothing), ENF_STAB_HIDDEN, ENF_STAB_HIDDEN);
+    expect(passage_of(1, flat), ENF_STAB_HIDDEN, ENF_STAB_HIDDEN);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_portal_is_always_passed),
+        cmocka_unit_test(a_portal_and_its_twin_are_not_passed_together),
+        cmocka_unit_test(doors_in_one_plane_need_common_area),
+        cmocka_unit_test(touching_is_not_passing),
+        cmocka_unit_test(equal_corners_are_no_edge),
+        cmocka_unit_test(lines_pass_as_the_oracle_says),
         cmocka_unit_test(answers_are_the_oracles),
+        cmocka_unit_test(neither_order_nor_hint_matters),
+        cmocka_unit_test(scale_does_not_matter),
+        cmocka_unit_test(any_finite_doubles_are_answered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
