@@ -111,7 +111,7 @@ static double first_root(double a, double b, double c) {
 }
 
 /// Of the points x + s y, s > 0: where the form is first 0, or else where its quotient with the square of the
-/// length is least. Both are of unit length, and the quotient falls from x towards y.
+/// length is least. Both are of unit length; the quotient falls from x towards y.
 static void step(double x[ENF_PLUECKER], const double y[ENF_PLUECKER]) {
     const double sign = form(x, x) < 0 ? -1 : 1;
     const double a = sign * form(x, x), b = sign * form(x, y), c = sign * form(y, y), d = dot6(x, y);
@@ -121,22 +121,30 @@ static void step(double x[ENF_PLUECKER], const double y[ENF_PLUECKER]) {
     make_unit(x);
 }
 
-/// Another point of the open cone towards which the form's quotient falls: one constraint more.
-static bool turn_to(enf_stabber *stabber, const double x[ENF_PLUECKER], double y[ENF_PLUECKER]) {
+/// A point y of the open cone with <y, down> > 0: one constraint more.
+static bool go_down(enf_stabber *stabber, double down[ENF_PLUECKER], double y[ENF_PLUECKER]) {
     const size_t stride = (size_t)stabber->capacity;
-    const double value = form(x, x), sign = value < 0 ? 1 : -1;
-    double down[ENF_PLUECKER];
     enf_min_norm hull;
-    for (int i = 0; i < ENF_PLUECKER; i++) down[i] = sign * (x[(i + 3) % ENF_PLUECKER] - value * x[i]);
     make_unit(down);
     for (int i = 0; i < ENF_PLUECKER; i++)
         stabber->vectors[(size_t)i * stride + (size_t)stabber->edge_count] = down[i];
     if (enf_min_norm_find(stabber->vectors, stabber->edge_count + 1, stabber->capacity, NULL, ENF_STAB_MARGIN,
-                          0.1, stabber->products, &hull) != ENF_MIN_NORM_POSITIVE)
+                          0, stabber->products, &hull) != ENF_MIN_NORM_POSITIVE)
         return false;
     memcpy(y, hull.x, sizeof hull.x);
     make_unit(y);
     return true;
+}
+
+/// Another point of the open cone: one at which the form with x has the other sign, or else one towards which
+/// the form's quotient with the square of the length falls.
+static bool turn_to(enf_stabber *stabber, const double x[ENF_PLUECKER], double y[ENF_PLUECKER]) {
+    const double value = form(x, x), sign = value < 0 ? 1 : -1;
+    double down[ENF_PLUECKER];
+    for (int i = 0; i < ENF_PLUECKER; i++) down[i] = sign * x[(i + 3) % ENF_PLUECKER];
+    if (go_down(stabber, down, y)) return true;
+    for (int i = 0; i < ENF_PLUECKER; i++) down[i] = sign * (x[(i + 3) % ENF_PLUECKER] - value * x[i]);
+    return go_down(stabber, down, y);
 }
 
 bool enf_stabber_search(enf_stabber *stabber, enf_line *line) {
