@@ -304,7 +304,7 @@ static void neither_order_nor_hint_matters(void **unused) {
         passage *p = random_passage((int)(i % KINDS), &state);
         const enf_stab_answer relaxed = answer_of(p, p->sequence, NULL, false),
                               exact = answer_of(p, p->sequence, NULL, true);
-        int32_t back[LENGTH], mixed[LENGTH];
+        int32_t back[LENGTH], mixed[LENGTH] = {0};
         for (int k = 0; k < p->count; k++) {
             back[k] = p->sequence[p->count - 1 - k] ^ 1;
             const int at = between(&state, 0, k);

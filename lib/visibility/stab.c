@@ -80,7 +80,7 @@ static void set_line(enf_stab *stab, const enf_line *line) {
 /// The hint, and whether the relaxation has a solution: HIDDEN, OPEN or VISIBLE.
 static enf_status begin(enf_stabber *stabber, const int32_t *sequence, int32_t count, const enf_line *hint,
                         enf_stab *stab, enf_error *error) {
-    bool feasible;
+    bool feasible = false;
     *stab = (enf_stab){.answer = ENF_STAB_HIDDEN};
     stabber->counts.calls++;
     stabber->sequence = sequence;
