@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "oracle_stab.h"
-#include "visibility/stab.h"
+#include "visibility/stab_parts.h"
 
 enum { LENGTH = 40, CORNERS = 8, EDGES = LENGTH * CORNERS, KINDS = 10 };
 
@@ -384,6 +384,87 @@ static void any_finite_doubles_are_answered(void **unused) {
     }
 }
 
+// ---- The exact tiers by themselves ----
+
+/// Some of the edges of degenerate passages: whoever says that they hold 0 must be right, and one of them
+/// must say so if only one combination gives 0.
+static void certificates_hold(void **unused) {
+    (void)unused;
+    uint64_t state = seed + 5;
+    const long cases = scaled(10000);
+    long small = 0, whole = 0;
+    for (long i = 0; i < cases; i++) {
+        passage *p = random_passage(7 + (int)(i % 3), &state);
+        oracle_edge chosen[ENF_HULL_MAX];
+        int32_t members[ENF_HULL_MAX];
+        int count = 0;
+        assert_true(enf_stabber_take(p->stabber, p->sequence, p->count));
+        for (int wanted = between(&state, 2, 5); count < wanted; count++)
+            members[count] = between(&state, 0, p->edge_count - 1);
+        for (int n = 0; n < count; n++) chosen[n] = p->edges[members[n]];
+        const bool holds = !oracle_stab_program(chosen, count);
+        const bool by_small = enf_stabber_zero_by_small(p->stabber, members, count),
+                   by_whole = enf_stabber_zero_by_whole(p->stabber, members, count);
+        assert_int_equal(by_small, by_whole); // the numbers are small
+        assert_true(holds || !by_whole);
+        small += by_small;
+        whole += holds;
+        destroy(p);
+    }
+    assert_true(small > cases / 200 && whole > small);
+}
+
+/// Sides of small whole numbers, lines or not; a few point much the same way, so that the form is more often
+/// not below 0.
+static int random_sides(double (*sides)[6], uint64_t *state) {
+    const int count = between(state, 6, 10), range = between(state, 1, 9),
+              sign = between(state, 0, 1) ? 1 : -1;
+    const double spread = between(state, 1, 4);
+    for (int k = 0; k < count; k++) {
+        for (int i = 0; i < 6; i++) sides[k][i] = between(state, -range, range);
+        for (int i = 0; i < 3; i++) {
+            if (between(state, 0, 1)) sides[k][3 + i] = sign * spread * sides[k][i] + between(state, -1, 1);
+        }
+    }
+    return count;
+}
+
+static void cones_are_the_oracles(void **unused) {
+    (void)unused;
+    uint64_t state = seed + 6;
+    const long cases = scaled(4000);
+    long falling = 0, pointed = 0, by_faces = 0;
+    enf_quadric q;
+    enf_quadric_init(&q);
+    for (long i = 0; i < cases; i++) {
+        double sides[10][6];
+        bool falls;
+        const int count = random_sides(sides, &state),
+                  rays = oracle_stab_cone((const double(*)[6])sides, 6, 1, &falls);
+        if (rays == 0) continue; // the first six are not independent
+        mpz_t number[10][6], *first[6];
+        for (int k = 0; k < count; k++) {
+            for (int j = 0; j < 6; j++) mpz_init_set_d(number[k][j], sides[k][j]);
+            if (k < 6) first[k] = number[k];
+        }
+        assert_true(enf_cone_start(&q.cone, first));
+        for (int k = 6; k < count; k++) assert_true(enf_cone_cut(&q.cone, number[k]));
+        for (q.sign = -1; q.sign <= 1; q.sign += 2) {
+            assert_int_equal(q.cone.ray_count,
+                             oracle_stab_cone((const double(*)[6])sides, count, q.sign, &falls));
+            assert_int_equal(enf_quadric_falls(&q), falls);
+            falling += falls;
+            by_faces += falls && q.steps == 3;
+            pointed++;
+        }
+        for (int k = 0; k < 6 * count; k++) mpz_clear(number[k / 6][k % 6]);
+    }
+    enf_quadric_free(&q);
+    print_message("seed %llu, %ld cones: below 0 in %ld, inside larger faces only in %ld\n",
+                  (unsigned long long)(seed + 6), pointed, falling, by_faces);
+    assert_true(by_faces > 0 && falling < pointed);
+}
+
 // ---- Lines ----
 
 /// Small whole numbers, so that many lines touch; then moved off by the last bit.
@@ -489,6 +570,8 @@ int main(void) {
         cmocka_unit_test(touching_is_not_passing),
         cmocka_unit_test(equal_corners_are_no_edge),
         cmocka_unit_test(lines_pass_as_the_oracle_says),
+        cmocka_unit_test(certificates_hold),
+        cmocka_unit_test(cones_are_the_oracles),
         cmocka_unit_test(answers_are_the_oracles),
         cmocka_unit_test(neither_order_nor_hint_matters),
         cmocka_unit_test(scale_does_not_matter),

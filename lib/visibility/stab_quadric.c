@@ -172,7 +172,11 @@ static bool face_falls(enf_quadric *q) {
 
 bool enf_quadric_falls(enf_quadric *q) {
     bool mixed;
-    if (ray_falls(q) || edge_falls(q, &mixed)) return true;
+    q->steps = 1;
+    if (ray_falls(q)) return true;
+    q->steps = 2;
+    if (edge_falls(q, &mixed)) return true;
+    q->steps = 3;
     return mixed && face_falls(q);
 }
 
