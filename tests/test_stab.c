@@ -15,7 +15,7 @@
 #include "oracle_stab.h"
 #include "visibility/stab_parts.h"
 
-enum { LENGTH = 40, CORNERS = 8, EDGES = LENGTH * CORNERS, KINDS = 10 };
+enum { LENGTH = 40, CORNERS = 8, EDGES = LENGTH * CORNERS, KINDS = 13 };
 
 static const uint64_t seed = 4711;
 
@@ -52,14 +52,23 @@ typedef struct passage {
     int count;
     oracle_edge edges[EDGES];
     int edge_count;
+    double factor;    ///< if not 0, coordinates are multiplied by it, rounded,
+    uint64_t *jitter; ///< and now and then moved to the next double
 } passage;
 
 static bool same_point(const double a[3], const double b[3]) {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-static void add_portal(passage *p, const double (*corners)[3], int count, bool turned) {
-    assert_true(enf_portal_graph_add(&p->graph, 0, 1, corners, count));
+static void add_portal(passage *p, const double (*given)[3], int count, bool turned) {
+    double corners[CORNERS][3];
+    for (int i = 0; i < 3 * count; i++) {
+        double x = given[i / 3][i % 3];
+        if (p->factor != 0) x *= p->factor;
+        if (p->jitter && !between(p->jitter, 0, 9)) x = nextafter(x, between(p->jitter, 0, 1) ? 1e9 : -1e9);
+        corners[i / 3][i % 3] = x;
+    }
+    assert_true(enf_portal_graph_add(&p->graph, 0, 1, (const double(*)[3])corners, count));
     p->sequence[p->count] = 2 * p->count + turned;
     p->count++;
     for (int i = 0, before = count - 1; i < count; before = i++) {
@@ -183,6 +192,10 @@ static passage *random_passage(int kind, uint64_t *state) {
     passage *p = calloc(1, sizeof *p);
     assert_non_null(p);
     const int length = random_length(state), few = between(state, 2, 6);
+    if (kind >= 10) { // nearly degenerate: the same to the last bits
+        p->factor = between(state, 1, 99) / 10.0;
+        p->jitter = state;
+    }
     switch (kind) {
     case 0:
         tunnel(p, length, 20, 40, 0, state);
@@ -209,6 +222,15 @@ static passage *random_passage(int kind, uint64_t *state) {
         rectangles(p, length, between(state, 2, 6), state);
         break;
     case 8:
+        triangles(p, few, between(state, 1, 4), state);
+        break;
+    case 9:
+        rectangles(p, few, between(state, 2, 3), state);
+        break;
+    case 10:
+        rectangles(p, length, between(state, 2, 6), state);
+        break;
+    case 11:
         triangles(p, few, between(state, 1, 4), state);
         break;
     default:
@@ -333,7 +355,8 @@ static void scale_does_not_matter(void **unused) {
         passage *p = random_passage((int)(i % KINDS), &state);
         const enf_stab_answer relaxed = answer_of(p, p->sequence, NULL, false),
                               exact = answer_of(p, p->sequence, NULL, true);
-        const int shift = between(&state, -900, 1000);
+        const int shift =
+            between(&state, p->jitter ? 0 : -900, 1000); // down, the least doubles would be lost
         for (int32_t k = 0; k < p->graph.opening_corner[p->count]; k++) {
             for (int j = 0; j < 3; j++) p->graph.corners[k][j] = ldexp(p->graph.corners[k][j], shift);
         }
