@@ -52,6 +52,7 @@ typedef struct passage {
     int count;
     oracle_edge edges[EDGES];
     int edge_count;
+    bool blocked;     ///< a winding has no edges
     double factor;    ///< if not 0, coordinates are multiplied by it, rounded,
     uint64_t *jitter; ///< and now and then moved to the next double
 } passage;
@@ -71,12 +72,14 @@ static void add_portal(passage *p, const double (*given)[3], int count, bool tur
     assert_true(enf_portal_graph_add(&p->graph, 0, 1, (const double(*)[3])corners, count));
     p->sequence[p->count] = 2 * p->count + turned;
     p->count++;
+    const int edges = p->edge_count;
     for (int i = 0, before = count - 1; i < count; before = i++) {
         if (same_point(corners[before], corners[i])) continue;
         oracle_edge *edge = &p->edges[p->edge_count++];
         memcpy(edge->a, corners[turned ? i : before], sizeof edge->a);
         memcpy(edge->b, corners[turned ? before : i], sizeof edge->b);
     }
+    p->blocked |= p->edge_count == edges;
 }
 
 static void finish(passage *p) {
@@ -248,7 +251,7 @@ typedef struct tally {
 
 static void check_passage(passage *p, tally *sum) {
     enf_stab relaxed, exact;
-    const bool program = oracle_stab_program(p->edges, p->edge_count);
+    const bool program = !p->blocked && oracle_stab_program(p->edges, p->edge_count);
     assert_int_equal(enf_stab_lp(p->stabber, p->sequence, p->count, NULL, &relaxed, NULL), ENF_OK);
     assert_int_equal(enf_stab_exact(p->stabber, p->sequence, p->count, NULL, &exact, NULL), ENF_OK);
     assert_int_equal(relaxed.answer != ENF_STAB_HIDDEN, program);
@@ -280,7 +283,7 @@ static void check_passage(passage *p, tally *sum) {
 static void answers_are_the_oracles(void **unused) {
     (void)unused;
     uint64_t state = seed;
-    const long cases = scaled(20000);
+    const long cases = scaled(5000);
     tally sum[KINDS] = {{0}};
     for (long i = 0; i < cases; i++) {
         passage *p = random_passage((int)(i % KINDS), &state);
@@ -321,7 +324,7 @@ static bool same_answer(enf_stab_answer a, enf_stab_answer b) {
 static void neither_order_nor_hint_matters(void **unused) {
     (void)unused;
     uint64_t state = seed + 1;
-    const long cases = scaled(5000);
+    const long cases = scaled(2000);
     for (long i = 0; i < cases; i++) {
         passage *p = random_passage((int)(i % KINDS), &state);
         const enf_stab_answer relaxed = answer_of(p, p->sequence, NULL, false),
@@ -350,7 +353,7 @@ static void neither_order_nor_hint_matters(void **unused) {
 static void scale_does_not_matter(void **unused) {
     (void)unused;
     uint64_t state = seed + 2;
-    const long cases = scaled(2000);
+    const long cases = scaled(1000);
     for (long i = 0; i < cases; i++) {
         passage *p = random_passage((int)(i % KINDS), &state);
         const enf_stab_answer relaxed = answer_of(p, p->sequence, NULL, false),
@@ -399,8 +402,8 @@ static void any_finite_doubles_are_answered(void **unused) {
             hint.to[k] = any_finite(&state);
         }
         const enf_stab_answer relaxed = answer_of(p, p->sequence, &hint, false);
-        if (p->edge_count)
-            assert_int_equal(relaxed != ENF_STAB_HIDDEN, oracle_stab_program(p->edges, p->edge_count));
+        assert_int_equal(relaxed != ENF_STAB_HIDDEN,
+                         !p->blocked && oracle_stab_program(p->edges, p->edge_count));
         if (relaxed == ENF_STAB_HIDDEN)
             assert_int_equal(answer_of(p, p->sequence, NULL, true), ENF_STAB_HIDDEN);
         destroy(p);
@@ -414,13 +417,17 @@ static void any_finite_doubles_are_answered(void **unused) {
 static void certificates_hold(void **unused) {
     (void)unused;
     uint64_t state = seed + 5;
-    const long cases = scaled(10000);
+    const long cases = scaled(5000);
     long small = 0, whole = 0;
     for (long i = 0; i < cases; i++) {
         passage *p = random_passage(7 + (int)(i % 3), &state);
         oracle_edge chosen[ENF_HULL_MAX];
         int32_t members[ENF_HULL_MAX];
         int count = 0;
+        if (p->blocked) { // the oracle's edges are not numbered like the stabber's
+            destroy(p);
+            continue;
+        }
         assert_true(enf_stabber_take(p->stabber, p->sequence, p->count));
         for (int wanted = between(&state, 2, 5); count < wanted; count++)
             members[count] = between(&state, 0, p->edge_count - 1);
@@ -455,7 +462,7 @@ static int random_sides(double (*sides)[6], uint64_t *state) {
 static void cones_are_the_oracles(void **unused) {
     (void)unused;
     uint64_t state = seed + 6;
-    const long cases = scaled(4000);
+    const long cases = scaled(600);
     long falling = 0, pointed = 0, by_faces = 0;
     enf_quadric q;
     enf_quadric_init(&q);
@@ -490,23 +497,29 @@ static void cones_are_the_oracles(void **unused) {
 
 // ---- Lines ----
 
-/// Small whole numbers, so that many lines touch; then moved off by the last bit.
+/// Small whole numbers, so that many lines touch, and their neighbours; every third time numbers of all sizes
+/// among them.
+static double line_number(bool wild, uint64_t *state) {
+    if (wild && !between(state, 0, 3)) return ldexp(real(state), between(state, -1070, 1000));
+    const double x = between(state, -3, 3);
+    return between(state, 0, 7) ? x : nextafter(x, HUGE_VAL);
+}
+
 static void lines_pass_as_the_oracle_says(void **unused) {
     (void)unused;
     uint64_t state = seed + 4;
-    const long cases = scaled(50000);
+    const long cases = scaled(20000);
     long passing = 0;
     for (long i = 0; i < cases; i++) {
         passage *p = calloc(1, sizeof *p);
         assert_non_null(p);
-        triangles(p, 1, 3, &state);
+        double number[5][3];
+        for (int k = 0; k < 15; k++) number[k / 3][k % 3] = line_number(i % 3 == 0, &state);
         enf_line line;
-        for (int k = 0; k < 3; k++) {
-            line.from[k] = between(&state, -3, 3);
-            line.to[k] = between(&state, -3, 3);
-            if (between(&state, 0, 3) == 0) line.to[k] = nextafter(line.to[k], HUGE_VAL);
-        }
-        const bool passes = p->edge_count && oracle_stab_passes(p->edges, p->edge_count, line.from, line.to);
+        memcpy(line.from, number[3], sizeof line.from);
+        memcpy(line.to, number[4], sizeof line.to);
+        add_portal(p, (const double(*)[3])number, 3, between(&state, 0, 1));
+        const bool passes = !p->blocked && oracle_stab_passes(p->edges, p->edge_count, line.from, line.to);
         const int quickly = enf_line_passes_quickly(&line, &p->graph, p->sequence[0]);
         assert_int_equal(enf_line_passes(&line, &p->graph, p->sequence[0]), passes);
         assert_true(quickly == 0 || (quickly > 0) == passes);

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/// Below this, products of three could have lost bits to underflow.
+/// Below this, times the size of the line's direction, products of two could have lost bits to underflow.
 #define TINY 0x1p-900
 
 static void subtract(const double a[3], const double b[3], double difference[3]) {
@@ -22,15 +22,16 @@ static bool same_point(const double a[3], const double b[3]) {
 
 /// Sign of det(along, a - from, b - from), or 0 if doubles cannot tell.
 static int side_quickly(const double along[3], const double a[3], const double b[3]) {
-    double sum = 0, magnitude = 0;
+    double sum = 0, magnitude = 0, reach = 1;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         double one = a[j] * b[k], two = a[k] * b[j];
         sum += along[i] * (one - two);
         magnitude += fabs(along[i]) * (fabs(one) + fabs(two));
+        reach += fabs(along[i]);
     }
     // As in base/exact.c: 8 roundings and a little. NaN and infinity fail the comparison.
-    if (!(fabs(sum) > 10 * 0x1p-53 * magnitude) || !(fabs(sum) > TINY) || isinf(magnitude)) return 0;
+    if (!(fabs(sum) > 10 * 0x1p-53 * magnitude) || !(fabs(sum) > TINY * reach) || isinf(magnitude)) return 0;
     return sum > 0 ? 1 : -1;
 }
 

@@ -10,7 +10,7 @@
 /// The search gives up after so many steps, or when a step keeps so much of the form: it ends at a least
 /// value that is not 0, most often because there is no line.
 enum { STEPS = 40 };
-static const double KEPT = 0.95;
+static const double kept_at_most = 0.95;
 
 static double dot3(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -157,7 +157,7 @@ bool enf_stabber_search(enf_stabber *stabber, enf_line *line) {
         if (i == 0) stabber->counts.searched++;
         if (!turn_to(stabber, x, y)) return false;
         step(x, y);
-        if (fabs(form(x, x)) > KEPT * before) return false;
+        if (fabs(form(x, x)) > kept_at_most * before) return false;
     }
     return false;
 }
