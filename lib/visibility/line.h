@@ -5,7 +5,7 @@
 
 #include "visibility/portal_graph.h"
 
-/// The whole line, not only the part between its points; it points from `from` to `to`.
+/// The whole line, not only the part between its points; it points from `from` to `to`. Finite.
 typedef struct enf_line {
     double from[3], to[3];
 } enf_line;
