@@ -147,7 +147,8 @@ static bool make_rows(hidden_search *search, const uint64_t *visible, size_t row
     if (!search->visible || !search->seen_count || !search->targets) return false;
     for (int32_t i = 0; i < cells; i++)
         for (int32_t j = 0; j < cells; j++) {
-            if (!has(visible + (size_t)i * row_words, j) && !has(visible + (size_t)j * row_words, i)) continue;
+            if (!has(visible + (size_t)i * row_words, j) && !has(visible + (size_t)j * row_words, i))
+                continue;
             set(search->visible + (size_t)i * search->words, j);
             search->seen_count[i]++;
         }
@@ -164,9 +165,8 @@ static bool make_search(hidden_search *search, const uint64_t *visible, size_t r
     for (int32_t k = 0; k < graph->opening_count; k++)
         for (int32_t c = graph->opening_corner[k]; c < graph->opening_corner[k + 1]; c++)
             search->corner_opening[c] = k;
-    return make_rows(search, visible, row_words) &&
-           enf_facing_cells_make(&search->facing, graph) && enf_hidden_proof_make(&search->proof, graph) &&
-           enf_witness_checker_make(&search->witness, graph);
+    return make_rows(search, visible, row_words) && enf_facing_cells_make(&search->facing, graph) &&
+           enf_hidden_proof_make(&search->proof, graph) && enf_witness_checker_make(&search->witness, graph);
 }
 
 static void free_search(hidden_search *search) {

@@ -6,15 +6,17 @@
 
 #include "visibility/portal_graph.h"
 
-/// Why it is enough to look at few sequences. Suppose pairs that are claimed hidden can see each other, and of
-/// all lines that say so take one with the fewest portals, from i to j. Every shorter stretch of its cells
+/// Why it is enough to look at few sequences. Suppose pairs that are claimed hidden can see each other, and
+/// of all lines that say so take one with the fewest portals, from i to j. Every shorter stretch of its cells
 /// joins two cells that see each other by fewer portals, and so are claimed visible. Hence it is enough to
 /// rule out, for each claimed hidden pair i, j, the sequences along which every other pair of cells is
 /// claimed visible. What comes out: if none of the pairs listed in `open` can see each other, then no pair
 /// that is claimed hidden can.
 typedef struct enf_hidden_pair {
     int32_t cell[2]; ///< ascending
-    bool seen;       ///< a line was found, and verified: from -> to leads from one to the other
+    bool seen;       ///< proved: they see each other
+    bool verified; ///< and enf_witness_check agrees: from -> to leads from one to the other; if it does not,
+                   ///< the slit is too thin for points of doubles
     double from[3], to[3];
 } enf_hidden_pair;
 
@@ -24,11 +26,11 @@ typedef struct enf_hidden_report {
     uint64_t left;         ///< of them, not looked at because of that
     enf_hidden_pair *open; ///< those that could not be confirmed; enf_hidden_report_free frees it
     size_t open_count, open_capacity;
-    uint64_t sequences; ///< portals stepped through
-    uint64_t programs;  ///< linear programs solved
-    uint64_t proofs;    ///< certificates verified; the same one counts once
-    uint64_t unproved;  ///< certificates that rounding had made up
-    uint64_t asked;     ///< whole sequences that no certificate rules out, cut in pieces
+    uint64_t sequences;   ///< portals stepped through
+    uint64_t programs;    ///< linear programs solved
+    uint64_t proofs;      ///< certificates verified; the same one counts once
+    uint64_t unproved;    ///< certificates that rounding had made up
+    uint64_t asked;       ///< whole sequences that no certificate rules out, cut in pieces
     uint64_t asked_early; ///< beginnings of sequences, the same
     uint64_t pieces;
     double seconds; ///< of processor time

@@ -3,8 +3,9 @@
 // error bound ("Adaptive precision floating-point arithmetic", 1997), else by whole numbers of any size.
 #include "visibility/check_witness.h"
 
+#include "visibility/whole_number.h"
+
 #include <float.h>
-#include <gmp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,27 +50,6 @@ void enf_witness_checker_free(enf_witness_checker *checker) {
 
 // ---------------------------------------------------------------------------------------------- sides
 
-/// The power of two of which a finite number is a multiple; a large one for 0.
-static int last_bit(double value) {
-    int exponent;
-    if (value == 0) return DBL_MAX_EXP;
-    frexp(value, &exponent);
-    return exponent - DBL_MANT_DIG;
-}
-
-/// out = value / 2^unit, a whole number.
-static void set_whole(mpz_t out, double value, int unit) {
-    int exponent;
-    double mantissa = ldexp(frexp(value, &exponent), DBL_MANT_DIG);
-    mpz_set_d(out, mantissa);
-    int shift = exponent - DBL_MANT_DIG - unit;
-    if (value == 0) return;
-    if (shift >= 0)
-        mpz_mul_2exp(out, out, (mp_bitcnt_t)shift);
-    else
-        mpz_tdiv_q_2exp(out, out, (mp_bitcnt_t)-shift); // drops zeros only
-}
-
 static void multiply_add(witness_numbers *numbers, int i, int j, int k, int sign) {
     mpz_mul(numbers->product, numbers->vector[0][i], numbers->vector[1][j]);
     mpz_mul(numbers->product, numbers->product, numbers->vector[2][k]);
@@ -84,13 +64,13 @@ static int side_exact(enf_witness_checker *checker, const double *point[4]) {
     int unit = DBL_MAX_EXP;
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < 3; i++) {
-            int bit = last_bit(point[k][i]);
+            int bit = enf_last_bit(point[k][i]);
             if (bit < unit) unit = bit;
         }
     for (int i = 0; i < 3; i++) {
-        set_whole(numbers->origin[i], point[0][i], unit);
+        enf_set_whole(numbers->origin[i], point[0][i], unit);
         for (int k = 0; k < VECTORS; k++) {
-            set_whole(numbers->vector[k][i], point[k + 1][i], unit);
+            enf_set_whole(numbers->vector[k][i], point[k + 1][i], unit);
             mpz_sub(numbers->vector[k][i], numbers->vector[k][i], numbers->origin[i]);
         }
     }

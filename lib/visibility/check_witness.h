@@ -31,7 +31,7 @@ typedef struct enf_witness_outcome {
 
 typedef struct enf_witness_checker {
     const enf_portal_graph *graph;
-    void *numbers; ///< scratch of the exact arithmetic
+    void *numbers;                    ///< scratch of the exact arithmetic
     uint64_t sides_near, sides_exact; ///< sides decided by doubles, and by whole numbers
 } enf_witness_checker;
 

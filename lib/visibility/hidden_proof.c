@@ -5,10 +5,8 @@
 
 #include "base/array.h"
 #include "base/hash.h"
+#include "visibility/whole_number.h"
 
-#include <float.h>
-#include <gmp.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,23 +48,6 @@ static void free_numbers(proof_numbers *numbers) {
     free(numbers);
 }
 
-/// The largest power of two of which all coordinates are multiples.
-static int common_unit(const enf_portal_graph *graph) {
-    int unit = 0;
-    int32_t corners = graph->opening_count ? graph->opening_corner[graph->opening_count] : 0;
-    for (int32_t c = 0; c < corners; c++)
-        for (int i = 0; i < 3; i++) {
-            int exponent;
-            double mantissa = frexp(graph->corners[c][i], &exponent);
-            while (mantissa != floor(mantissa)) {
-                mantissa *= 2;
-                exponent--;
-            }
-            if (mantissa != 0 && exponent < unit) unit = exponent;
-        }
-    return unit;
-}
-
 bool enf_hidden_proof_make(enf_hidden_proof *proof, const enf_portal_graph *graph) {
     *proof = (enf_hidden_proof){.graph = graph, .slot_count = 1 << 12};
     size_t corners = graph->opening_count ? (size_t)graph->opening_corner[graph->opening_count] : 0;
@@ -77,7 +58,7 @@ bool enf_hidden_proof_make(enf_hidden_proof *proof, const enf_portal_graph *grap
         int32_t first = graph->opening_corner[k], end = graph->opening_corner[k + 1];
         for (int32_t c = first; c < end; c++) proof->corner_next[c] = c + 1 < end ? c + 1 : first;
     }
-    ((proof_numbers *)proof->numbers)->unit = common_unit(graph);
+    ((proof_numbers *)proof->numbers)->unit = enf_last_bit_of_graph(graph);
     return true;
 }
 
@@ -90,24 +71,14 @@ void enf_hidden_proof_free(enf_hidden_proof *proof) {
 
 // ---------------------------------------------------------------------------------------------- numbers
 
-static void set_whole(mpz_t out, double value, int unit) {
-    int exponent;
-    double mantissa = ldexp(frexp(value, &exponent), DBL_MANT_DIG);
-    int shift = exponent - DBL_MANT_DIG - unit;
-    mpz_set_d(out, mantissa);
-    if (shift >= 0)
-        mpz_mul_2exp(out, out, (mp_bitcnt_t)shift);
-    else
-        mpz_tdiv_q_2exp(out, out, (mp_bitcnt_t)-shift); // drops zeros only
-}
-
 /// Column k: direction and moment of an edge.
 static void set_column(const enf_hidden_proof *proof, int k, int32_t edge) {
     proof_numbers *numbers = proof->numbers;
     int32_t corner[2] = {edge >> 1, proof->corner_next[edge >> 1]};
     for (int e = 0; e < 2; e++)
         for (int i = 0; i < 3; i++)
-            set_whole(numbers->end[e ^ (edge & 1)][i], proof->graph->corners[corner[e]][i], numbers->unit);
+            enf_set_whole(numbers->end[e ^ (edge & 1)][i], proof->graph->corners[corner[e]][i],
+                          numbers->unit);
     mpz_t *a = numbers->end[0], *b = numbers->end[1];
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, l = (i + 2) % 3;
@@ -158,8 +129,8 @@ static int reduce(proof_numbers *numbers, int count, int *free_column) {
 static bool has_weights(const proof_numbers *numbers, int rank, int free_column) {
     for (int r = 0; r < rank; r++) {
         // The pivots that were made before the free column was passed, and those after, alike.
-        int sign = mpz_sgn(numbers->matrix[r][free_column]) *
-                   mpz_sgn(numbers->matrix[r][numbers->pivot_column[r]]);
+        int sign =
+            mpz_sgn(numbers->matrix[r][free_column]) * mpz_sgn(numbers->matrix[r][numbers->pivot_column[r]]);
         if (sign > 0) return false;
     }
     return true;

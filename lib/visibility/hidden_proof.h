@@ -27,8 +27,8 @@ void enf_hidden_proof_free(enf_hidden_proof *proof);
 /// certain that no line passes all of them on their inner side, strictly.
 bool enf_hidden_proof_ask(enf_hidden_proof *proof, const int32_t *edges, int count);
 
-/// The place to keep what was found about two directed portals, by whatever means: 0 (at first), 1 or -1. Good
-/// until the next call.
+/// The place to keep what was found about two directed portals, by whatever means: 0 (at first), 1 or -1.
+/// Good until the next call.
 int8_t *enf_hidden_proof_of_portals(enf_hidden_proof *proof, int32_t first, int32_t second);
 
 #endif

@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    FEW_PIECES = 4,   ///< for a pair of triangles, where a certificate would have done but for rounding
+    FEW_PIECES = 4, ///< for a pair of triangles, where a certificate would have done but for rounding
     PIECE_LIMIT = 3000,
     MANY_CORNERS = 64 ///< of a portal; with more, the same is left out
 };
@@ -165,21 +165,32 @@ bool hidden_search_program(hidden_search *search, hidden_frame *frame, int32_t p
     return !portals_exclude(search, frame) && !few_pieces_exclude(search, frame);
 }
 
+/// Lines may be given by their points in any two portals on the way. From the first to the last is best as a
+/// rule; where portals touch, others may decide what these can't.
+static enf_pieces_answer ask_pieces(hidden_search *search, const hidden_frame *frame) {
+    int32_t depth = (int32_t)(frame - search->stack);
+    enf_pieces_answer answer = ENF_PIECES_OPEN;
+    for (int32_t length = depth; length > 0 && answer == ENF_PIECES_OPEN; length--)
+        for (int32_t at = 0; at + length <= depth && answer == ENF_PIECES_OPEN; at++)
+            answer = enf_hidden_pieces_ask(&search->pieces, search->stack[at].portal >> 1,
+                                           search->stack[at + length].portal >> 1, search->column_edge,
+                                           search->proof.corner_next, frame->column_count);
+    return answer;
+}
+
 bool hidden_search_pieces(hidden_search *search, const hidden_frame *frame, enf_hidden_pair *pair) {
     enf_hidden_pieces *work = &search->pieces;
-    int32_t first = search->stack[0].portal;
-    search->pieces.limit = search->options->piece_limit ? search->options->piece_limit : PIECE_LIMIT;
+    work->limit = search->options->piece_limit ? search->options->piece_limit : PIECE_LIMIT;
     search->report->asked++;
-    enf_pieces_answer answer =
-        enf_hidden_pieces_ask(work, first >> 1, frame->portal >> 1, search->column_edge,
-                              search->proof.corner_next, frame->column_count);
-    pair->cell[0] = enf_portal_from(search->graph, first);
+    enf_pieces_answer answer = ask_pieces(search, frame);
+    pair->cell[0] = enf_portal_from(search->graph, search->stack[0].portal);
     pair->cell[1] = enf_portal_to(search->graph, frame->portal);
     if (answer == ENF_PIECES_SEEN) {
         enf_witness line = {.cell = {pair->cell[0], pair->cell[1]}};
         memcpy(line.from, work->from, sizeof line.from);
         memcpy(line.to, work->to, sizeof line.to);
-        pair->seen = enf_witness_check(&search->witness, &line).fault == ENF_WITNESS_HOLDS;
+        pair->seen = true;
+        pair->verified = enf_witness_check(&search->witness, &line).fault == ENF_WITNESS_HOLDS;
         memcpy(pair->from, line.from, sizeof pair->from);
         memcpy(pair->to, line.to, sizeof pair->to);
     }

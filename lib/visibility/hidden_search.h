@@ -50,7 +50,7 @@ void hidden_search_edges(hidden_search *search, int32_t source);
 /// passes the whole sequence.
 bool hidden_search_program(hidden_search *search, hidden_frame *frame, int32_t portal);
 
-/// For a sequence (frames 0 .. depth, the last one with `frame`'s edges) that no certificate rules out: is it
+/// For a whole sequence, of which `frame` is the last one on the stack, that no certificate rules out: is it
 /// hidden nevertheless? If not, *pair has what was found.
 bool hidden_search_pieces(hidden_search *search, const hidden_frame *frame, enf_hidden_pair *pair);
 

@@ -59,8 +59,8 @@ static bool choose_entering(const enf_line_basis *basis, const double (*columns)
     bool found = false;
     for (int32_t k = 0; k < count; k++) {
         const double *e = columns[k];
-        double violation = t * e[6] - (x[0] * e[0] + x[1] * e[1] + x[2] * e[2] + x[3] * e[3] + x[4] * e[4] +
-                                       x[5] * e[5]);
+        double violation =
+            t * e[6] - (x[0] * e[0] + x[1] * e[1] + x[2] * e[2] + x[3] * e[3] + x[4] * e[4] + x[5] * e[5]);
         if (violation <= most) continue;
         most = violation;
         *entering = k;

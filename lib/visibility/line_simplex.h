@@ -14,8 +14,8 @@ enum { ENF_LINE_ROWS = 7 };
 /// six numbers, of an edge; the seventh is 1, or 0 for one that only asks <x, e> >= 0. The basis is the
 /// dual's; it stays feasible when columns are added, so a search goes on from its parent's.
 typedef struct enf_line_basis {
-    int32_t column[ENF_LINE_ROWS];  ///< >= 0: a column; -1 - r, -7 - r: plus or minus the unit vector r
-    double weight[ENF_LINE_ROWS];   ///< w of each, >= 0
+    int32_t column[ENF_LINE_ROWS]; ///< >= 0: a column; -1 - r, -7 - r: plus or minus the unit vector r
+    double weight[ENF_LINE_ROWS];  ///< w of each, >= 0
     double inverse[ENF_LINE_ROWS][ENF_LINE_ROWS];
     double point[6]; ///< x
     double margin;   ///< t; 0: no point is strictly inside

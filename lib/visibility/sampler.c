@@ -61,8 +61,7 @@ static void any_line(enf_sampler *sampler, enf_sampler_line *line) {
     double z = 2 * enf_sampler_random(sampler) - 1, turn = 6.283185307179586 * enf_sampler_random(sampler);
     double flat = sqrt(fmax(0, 1 - z * z)), direction[3] = {flat * cos(turn), flat * sin(turn), z};
     point_inside(sampler, opening, line->point[0]);
-    for (int i = 0; i < 3; i++)
-        line->point[1][i] = line->point[0][i] + direction[i] * sampler->size * 0x1p-4;
+    for (int i = 0; i < 3; i++) line->point[1][i] = line->point[0][i] + direction[i] * sampler->size * 0x1p-4;
     line->cell = sampler->graph->opening_cell[opening][0];
 }
 
@@ -72,7 +71,8 @@ static void line_through_two(enf_sampler *sampler, enf_sampler_line *line) {
     int32_t first = enf_sampler_choose(sampler, graph->opening_count), portal = 2 * first;
     for (int32_t hops = 1 + enf_sampler_choose(sampler, HOPS); hops > 0; hops--) {
         int32_t cell = enf_portal_to(graph, portal), begin = graph->cell_portal[cell];
-        portal = graph->cell_portals[begin + enf_sampler_choose(sampler, graph->cell_portal[cell + 1] - begin)];
+        portal =
+            graph->cell_portals[begin + enf_sampler_choose(sampler, graph->cell_portal[cell + 1] - begin)];
     }
     point_inside(sampler, first, line->point[0]);
     point_inside(sampler, portal >> 1, line->point[1]);
@@ -204,8 +204,8 @@ enf_status enf_sampler_make(enf_sampler *sampler, const enf_portal_graph *graph,
     sampler->tried = enf_array_zeroed(cells, sampler->tried_words * sizeof *sampler->tried);
     sampler->pair_line = enf_array_new(pairs, sizeof *sampler->pair_line);
     sampler->pair_clearance = enf_array_zeroed(pairs, sizeof *sampler->pair_clearance);
-    if (!sampler->edge || !sampler->normal || !sampler->corner_next || !sampler->sequence || !sampler->tried ||
-        !sampler->pair_line || !sampler->pair_clearance) {
+    if (!sampler->edge || !sampler->normal || !sampler->corner_next || !sampler->sequence ||
+        !sampler->tried || !sampler->pair_line || !sampler->pair_clearance) {
         enf_sampler_free(sampler);
         return enf_fail_memory(error, "the sampler");
     }

@@ -80,7 +80,8 @@ static double least_side(const lead *lead, const double x[6]) {
     double least = DBL_MAX;
     for (int32_t k = 0; k < lead->column_count; k++) {
         const double *e = lead->sampler->columns[k];
-        least = fmin(least, x[0] * e[0] + x[1] * e[1] + x[2] * e[2] + x[3] * e[3] + x[4] * e[4] + x[5] * e[5]);
+        least =
+            fmin(least, x[0] * e[0] + x[1] * e[1] + x[2] * e[2] + x[3] * e[3] + x[4] * e[4] + x[5] * e[5]);
     }
     return least;
 }
@@ -107,7 +108,8 @@ static bool solve_tangent(const lead *lead, const enf_line_basis *start, const d
         column[6] = 0;
     }
     lead->sampler->programs++;
-    enf_line_basis_solve(&basis, (const double(*)[ENF_LINE_ROWS])columns, lead->column_count + 2, margin_least);
+    enf_line_basis_solve(&basis, (const double(*)[ENF_LINE_ROWS])columns, lead->column_count + 2,
+                         margin_least);
     memcpy(best, basis.point, sizeof basis.point);
     return basis.margin > margin_least;
 }
@@ -206,7 +208,8 @@ void enf_sampler_lead_on(enf_sampler *sampler, const enf_sampler_line *line, int
             lead.sequence_count = take_sequence(sampler, line, from, to);
             if (lead.sequence_count == 0 || !begin(&lead)) return;
             enf_line_basis_begin(&start, sampler->columns[0]);
-            enf_line_basis_solve(&start, (const double(*)[ENF_LINE_ROWS])sampler->columns, lead.column_count, 0);
+            enf_line_basis_solve(&start, (const double(*)[ENF_LINE_ROWS])sampler->columns, lead.column_count,
+                                 0);
         }
         if (portal == (sampler->sequence[lead.sequence_count - 1] ^ 1)) continue;
         enf_line_basis basis = start;

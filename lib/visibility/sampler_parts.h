@@ -5,8 +5,8 @@
 
 #include "visibility/sampler.h"
 
-/// Walks the line from its cell, in its direction and against it; the walk stays in the sampler until the next
-/// one. Returns the place of the line's cell, -1 without memory.
+/// Walks the line from its cell, in its direction and against it; the walk stays in the sampler until the
+/// next one. Returns the place of the line's cell, -1 without memory.
 int32_t enf_sampler_walk(enf_sampler *sampler, const enf_sampler_line *line);
 
 /// The same, and notes all pairs of cells on the way.
