@@ -13,7 +13,6 @@
 enum {
     RAYS_A_ROUND = 256,
     LEADS_A_ROUND = 512, ///< pairs whose lines are led on, while there are any
-    AGAIN_A_ROUND = 8,   ///< and lines of random walks, led on from cells that were tried along another one
     HOPS = 10,
 };
 
@@ -110,7 +109,8 @@ static void next_line(enf_sampler *sampler, enf_sampler_line *line) {
 
 // ---------------------------------------------------------------------------------------------- run
 
-/// Leads the line of the last walk on, from one of its cells through another.
+/// Leads the line of the last walk on, from one of its cells through another, even where another line was led
+/// on before: it takes another way.
 static void lead_walk_on(enf_sampler *sampler, const enf_sampler_line *line) {
     int32_t count = sampler->walk_last - sampler->walk_first + 1;
     int32_t from = sampler->walk_cell[sampler->walk_first + enf_sampler_choose(sampler, count)];
@@ -138,7 +138,7 @@ enf_status enf_sampler_run(enf_sampler *sampler, double seconds, uint64_t rays, 
             enf_sampler_line line = {.cell = 0};
             next_line(sampler, &line);
             enf_sampler_throw(sampler, &line);
-            if (k < AGAIN_A_ROUND && !sampler->failed) lead_walk_on(sampler, &line);
+            if (!sampler->failed) lead_walk_on(sampler, &line);
         }
         lead_queue_on(sampler);
     }
