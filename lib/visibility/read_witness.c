@@ -12,7 +12,7 @@
 static enf_status read_cells(enf_source *source, int32_t cell[2], int32_t cell_count, enf_error *error) {
     for (int e = 0; e < 2; e++) {
         int64_t number;
-        if (!enf_source_whole(source, &number) || !enf_source_word_ends(source))
+        if (!enf_source_more(source) || !enf_source_whole(source, &number) || !enf_source_word_ends(source))
             return enf_source_fail(source, error,
                                    "the number of a cell should stand here; make the file again");
         if (number < 0 || number >= cell_count)
