@@ -15,6 +15,8 @@
 
 #include "visibility/check_hidden.h"
 #include "visibility/check_witness.h"
+#include "visibility/hidden_pieces.h"
+#include "visibility/hidden_proof.h"
 #include "visibility/sampler.h"
 #include "witness_graphs.h"
 
@@ -69,6 +71,23 @@ static void an_edge_that_is_touched_is_not_passed(void **state) {
     enf_portal_graph_free(&graph);
 }
 
+/// Lines from (0, a) to (3, b) in the plane of x and y, which meet the edge x = 1, y = 2 if b = 6 - 2 a, and
+/// those that miss it by the last bit of b.
+static void lines_that_nearly_touch_are_decided_exactly(void **state) {
+    (void)state;
+    uint64_t seed = 271828;
+    enf_portal_graph graph = row_of_rooms(2);
+    print_message("seed %llu\n", (unsigned long long)seed);
+    for (int round = 0; round < 3000; ++round) {
+        double a = 1 + random_unit(&seed), b = 6 - 2 * a, z = 0.25 + random_unit(&seed);
+        const double *from = POINT(0, a, z);
+        assert_int_equal(fault_of(&graph, 0, 1, from, POINT(3, b, 0.75)), ENF_WITNESS_STUCK);
+        assert_int_equal(fault_of(&graph, 0, 1, from, POINT(3, nextafter(b, 9), 0.75)), ENF_WITNESS_STUCK);
+        assert_int_equal(fault_of(&graph, 0, 1, from, POINT(3, nextafter(b, 0), 0.75)), ENF_WITNESS_HOLDS);
+    }
+    enf_portal_graph_free(&graph);
+}
+
 static void two_ways_out_of_one_cell_are_a_fork(void **state) {
     (void)state;
     enf_portal_graph fork = {.cell_count = 4};
@@ -117,6 +136,39 @@ static void numbers_may_be_huge_or_tiny(void **state) {
         assert_int_equal(fault_of(&graph, 0, 5, from, wrong), ENF_WITNESS_STUCK);
         enf_portal_graph_free(&graph);
     }
+}
+
+// ---------------------------------------------------------------------------------------------- proofs
+
+static void edges_that_face_each_other_are_a_proof(void **state) {
+    (void)state;
+    enf_portal_graph graph = {.cell_count = 4};
+    enf_hidden_proof proof;
+    add_square(&graph, 0, 1, 1);
+    add_square(&graph, 1, 2, 1); // the same corners once more
+    add_square(&graph, 2, 3, 2);
+    finish(&graph);
+    assert_true(enf_hidden_proof_make(&proof, &graph));
+    for (int twice = 0; twice < 2; ++twice) { // the second time from memory
+        assert_true(enf_hidden_proof_ask(&proof, (const int32_t[]){0, 1}, 2));
+        assert_true(enf_hidden_proof_ask(&proof, (const int32_t[]){4, 0, 9}, 3));
+        assert_true(enf_hidden_proof_ask(&proof, (const int32_t[]){0, 9}, 2));
+        assert_false(enf_hidden_proof_ask(&proof, (const int32_t[]){0, 8}, 2));
+        assert_false(enf_hidden_proof_ask(&proof, (const int32_t[]){0, 2, 4, 6}, 4));
+        assert_false(enf_hidden_proof_ask(&proof, (const int32_t[]){0, 2, 4, 6, 16, 18, 20}, 7));
+    }
+    enf_hidden_proof_free(&proof);
+    enf_portal_graph_free(&graph);
+}
+
+static void a_door_by_itself_hides_nothing(void **state) {
+    (void)state;
+    enf_portal_graph graph = row_of_rooms(2);
+    enf_hidden_pieces work = {.graph = &graph, .limit = 100};
+    const int32_t edges[] = {0, 2, 4, 6}, next[] = {1, 2, 3, 0};
+    assert_int_equal(enf_hidden_pieces_ask(&work, 0, 0, edges, next, 4), ENF_PIECES_OPEN);
+    enf_hidden_pieces_free(&work);
+    enf_portal_graph_free(&graph);
 }
 
 // ---------------------------------------------------------------------------------------------- sampler
@@ -283,10 +335,13 @@ int main(void) {
         cmocka_unit_test(a_line_through_a_row_of_rooms_arrives),
         cmocka_unit_test(a_line_into_the_wall_is_stuck),
         cmocka_unit_test(an_edge_that_is_touched_is_not_passed),
+        cmocka_unit_test(lines_that_nearly_touch_are_decided_exactly),
         cmocka_unit_test(two_ways_out_of_one_cell_are_a_fork),
         cmocka_unit_test(a_line_that_goes_in_circles_ends),
         cmocka_unit_test(no_line_and_no_cell_are_told),
         cmocka_unit_test(numbers_may_be_huge_or_tiny),
+        cmocka_unit_test(edges_that_face_each_other_are_a_proof),
+        cmocka_unit_test(a_door_by_itself_hides_nothing),
         cmocka_unit_test(the_sampler_finds_a_slit_that_random_lines_miss),
         cmocka_unit_test(the_same_seed_finds_the_same),
         cmocka_unit_test(the_sampler_does_not_see_around_a_bend),

@@ -73,11 +73,15 @@ enf_portal_graph three_doors(void) {
     return graph;
 }
 
-static int32_t random_below(uint64_t *state, int32_t count) {
-    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+double random_unit(uint64_t *seed) {
+    uint64_t z = *seed += 0x9e3779b97f4a7c15u;
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
     z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (int32_t)((z ^ z >> 31) % (uint64_t)count);
+    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+static int32_t random_below(uint64_t *seed, int32_t count) {
+    return (int32_t)(random_unit(seed) * count);
 }
 
 /// A parallelogram about (at, y, z) whose normal points forwards.

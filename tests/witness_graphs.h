@@ -29,6 +29,9 @@ enf_portal_graph slit(double width);
 /// Rooms 0 .. 3 behind doors square to y, z and x, out of the level dm1.
 enf_portal_graph three_doors(void);
 
+/// At least 0, less than 1.
+double random_unit(uint64_t *seed);
+
 /// Tilted doors along x, in whole numbers.
 enf_portal_graph random_chain(uint64_t *seed);
 
