@@ -253,12 +253,13 @@ static void sample_level(const enf_portal_graph *graph, const enf_pvs *pvs) {
     enf_sampler_free(&sampler);
 }
 
-static void confirm_level(const enf_portal_graph *graph, const enf_pvs *pvs) {
+/// Pairs left out of the reference that a line joins exactly, though most by less than doubles can show.
+static void confirm_level(const enf_portal_graph *graph, const enf_pvs *pvs, size_t wrong) {
     const enf_hidden_options options = {0};
     enf_hidden_report report;
     assert_int_equal(enf_check_hidden(graph, pvs->rows, pvs->row_words, &options, &report, NULL), ENF_OK);
     assert_true(report.ended);
-    assert_true(report.open_count < 50);
+    assert_int_equal(report.open_count, wrong);
     for (size_t k = 0; k < report.open_count; ++k) assert_true(report.open[k].seen);
     enf_hidden_report_free(&report);
 }
@@ -268,6 +269,7 @@ static void the_reference_sets_of_levels_are_nearly_right(void **state) {
     (void)state;
 #ifdef ENFILADE_SHARED_DIR
     static const char *const levels[] = {"dm4", "e1m7", "dm1"};
+    static const size_t wrong[] = {2, 18, 10};
     for (size_t k = 0; k < sizeof levels / sizeof *levels; ++k) {
         char path[1024];
         enf_portal_graph graph = {0};
@@ -281,7 +283,7 @@ static void the_reference_sets_of_levels_are_nearly_right(void **state) {
         snprintf(path, sizeof path, "%s/quake/prt/%s.pvs.txt.gz", ENFILADE_SHARED_DIR, levels[k]);
         assert_int_equal(enf_pvs_read(&pvs, path, graph.cell_count, NULL), ENF_OK);
         sample_level(&graph, &pvs);
-        confirm_level(&graph, &pvs);
+        confirm_level(&graph, &pvs, wrong[k]);
         enf_pvs_free(&pvs);
         enf_portal_graph_free(&graph);
     }
