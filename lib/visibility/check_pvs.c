@@ -72,6 +72,8 @@ static bool is_listed(const enf_pvs *pvs, int32_t i, int32_t j) {
 static void check_complete(pvs_checker *checker) {
     const enf_witness_list *list = checker->options->witnesses;
     size_t at = 0;
+    uint64_t missing = 0;
+    int32_t first[2] = {-1, -1};
     begin(checker, "visible: a sight line for each pair", "and none for any other");
     for (int32_t i = 0; i < checker->pvs->cell_count; i++)
         for (int32_t j = i + 1; j < checker->pvs->cell_count; j++) {
@@ -79,10 +81,13 @@ static void check_complete(pvs_checker *checker) {
             bool shown = at < list->count && list->items[at].cell[0] == i && list->items[at].cell[1] == j;
             at += shown;
             checker->row->tested += listed;
-            if (listed && !shown) break_row(checker, "none for cells %" PRId32 " and %" PRId32, i, j);
+            if (listed && !shown && missing++ == 0) memcpy(first, (int32_t[]){i, j}, sizeof first);
             if (shown && !listed)
                 break_row(checker, "one for cells %" PRId32 " and %" PRId32 ", which are not listed", i, j);
         }
+    if (missing > 0)
+        break_row(checker, "none for cells %" PRId32 " and %" PRId32 "; %" PRIu64 " such pairs", first[0],
+                  first[1], missing);
 }
 
 static bool check_lines(pvs_checker *checker) {

@@ -3,6 +3,7 @@
 // error bound ("Adaptive precision floating-point arithmetic", 1997), else by whole numbers of any size.
 #include "visibility/check_witness.h"
 
+#include "base/array.h"
 #include "visibility/whole_number.h"
 
 #include <float.h>
@@ -33,7 +34,9 @@ bool enf_witness_checker_make(enf_witness_checker *checker, const enf_portal_gra
         for (int k = 0; k < VECTORS; k++) mpz_init(numbers->vector[k][i]);
     }
     checker->numbers = numbers;
-    return true;
+    checker->entered = enf_array_zeroed((size_t)graph->cell_count, sizeof *checker->entered);
+    checker->queue = enf_array_new((size_t)graph->cell_count, sizeof *checker->queue);
+    return checker->entered && checker->queue;
 }
 
 void enf_witness_checker_free(enf_witness_checker *checker) {
@@ -45,7 +48,9 @@ void enf_witness_checker_free(enf_witness_checker *checker) {
         for (int k = 0; k < VECTORS; k++) mpz_clear(numbers->vector[k][i]);
     }
     free(numbers);
-    checker->numbers = NULL;
+    free(checker->entered);
+    free(checker->queue);
+    *checker = (enf_witness_checker){.graph = NULL};
 }
 
 // ---------------------------------------------------------------------------------------------- sides
@@ -117,33 +122,36 @@ static bool passes(enf_witness_checker *checker, int32_t portal, const double fr
     return true;
 }
 
-/// The portal out of `cell` that the line passes; -1: none, -2: several.
-static int32_t way_out(enf_witness_checker *checker, int32_t cell, const double from[3], const double to[3]) {
+/// Queues the cells behind the portals out of a cell that the line passes; returns the queue's new length.
+static int32_t go_on(enf_witness_checker *checker, int32_t cell, const double from[3], const double to[3],
+                     int32_t count, enf_witness_outcome *outcome) {
     const enf_portal_graph *graph = checker->graph;
-    int32_t found = -1;
+    int32_t before = outcome->steps;
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
-        if (!passes(checker, graph->cell_portals[k], from, to)) continue;
-        if (found >= 0) return -2;
-        found = graph->cell_portals[k];
+        int32_t portal = graph->cell_portals[k], next = enf_portal_to(graph, portal);
+        if (!passes(checker, portal, from, to)) continue;
+        outcome->steps++;
+        if (checker->entered[next] == checker->walks) continue;
+        checker->entered[next] = checker->walks;
+        checker->queue[count++] = next;
     }
-    return found;
+    outcome->forked |= outcome->steps > before + 1;
+    return count;
 }
 
 static enf_witness_outcome walk(enf_witness_checker *checker, const int32_t cell[2], const double from[3],
                                 const double to[3]) {
-    enf_witness_outcome outcome = {.cell = cell[0]};
-    while (outcome.cell != cell[1]) {
-        int32_t portal = way_out(checker, outcome.cell, from, to);
-        if (portal < 0) {
-            outcome.fault = portal == -1 ? ENF_WITNESS_STUCK : ENF_WITNESS_FORKS;
-            return outcome;
-        }
-        if (outcome.steps >= checker->graph->cell_count) {
-            outcome.fault = ENF_WITNESS_LOOPS;
-            return outcome;
-        }
-        outcome.cell = enf_portal_to(checker->graph, portal);
-        outcome.steps++;
+    enf_witness_outcome outcome = {.fault = ENF_WITNESS_STUCK, .cell = cell[0]};
+    int32_t count = 1;
+    checker->walks++;
+    checker->entered[cell[0]] = checker->walks;
+    checker->queue[0] = cell[0];
+    for (int32_t at = 0; at < count && outcome.fault; at++) {
+        outcome.cell = checker->queue[at];
+        if (outcome.cell == cell[1])
+            outcome.fault = ENF_WITNESS_HOLDS;
+        else
+            count = go_on(checker, outcome.cell, from, to, count, &outcome);
     }
     return outcome;
 }
@@ -175,8 +183,6 @@ void enf_witness_describe(enf_witness_outcome outcome, char *text, size_t size) 
         [ENF_WITNESS_NO_CELL] = "there is no such cell; from cell",
         [ENF_WITNESS_NO_LINE] = "the two points are no line; from cell",
         [ENF_WITNESS_STUCK] = "the line passes no portal out of cell",
-        [ENF_WITNESS_FORKS] = "the line passes more than one portal out of cell",
-        [ENF_WITNESS_LOOPS] = "the line goes round and round, last in cell",
     };
     snprintf(text, size, "%s %d, after %d portals", words[outcome.fault], (int)outcome.cell,
              (int)outcome.steps);
