@@ -272,6 +272,7 @@ static void neighbours_are_never_confirmed_hidden(void **state) {
     enf_portal_graph graph = row_of_rooms(3);
     enf_hidden_report report = claim_hidden(&graph, 1, 2);
     assert_int_equal(report.open_count, 1);
+    assert_true(report.open[0].seen && report.open[0].verified);
     enf_hidden_report_free(&report);
     enf_portal_graph_free(&graph);
 }

@@ -126,11 +126,12 @@ static bool search_from(hidden_search *search, int32_t source, double start) {
 /// Each pair is looked at from the end that sees less. Returns how many are this source's.
 static uint64_t choose_targets(hidden_search *search, int32_t source) {
     uint64_t count = 0;
-    const uint64_t *row = visible_row(search, source);
+    const uint64_t *row = visible_row(search, source), *only = search->options->only;
+    if (only) only += (size_t)source * search->only_words;
     memset(search->targets, 0, search->words * sizeof *search->targets);
     for (int32_t cell = 0; cell < search->graph->cell_count; cell++) {
         int32_t mine = search->seen_count[source], other = search->seen_count[cell];
-        if (cell == source || has(row, cell)) continue;
+        if (cell == source || has(row, cell) || (only && !has(only, cell))) continue;
         if (mine > other || (mine == other && source > cell)) continue;
         set(search->targets, cell);
         count++;
@@ -205,7 +206,7 @@ static void search_all(hidden_search *search, double start) {
 
 enf_status enf_check_hidden(const enf_portal_graph *graph, const uint64_t *visible, size_t row_words,
                             const enf_hidden_options *options, enf_hidden_report *report, enf_error *error) {
-    hidden_search search = {.graph = graph, .options = options, .report = report};
+    hidden_search search = {.graph = graph, .options = options, .report = report, .only_words = row_words};
     double start = enf_timer_cpu();
     memset(report, 0, sizeof *report);
     bool made = make_search(&search, visible, row_words);

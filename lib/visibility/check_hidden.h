@@ -37,8 +37,9 @@ typedef struct enf_hidden_report {
 } enf_hidden_report;
 
 typedef struct enf_hidden_options {
-    double seconds;      ///< of processor time at most; 0: no limit
-    int32_t piece_limit; ///< for a sequence and a pair of triangles; 0: 3000
+    double seconds;       ///< of processor time at most; 0: no limit
+    const uint64_t *only; ///< rows like those of `visible`: look at these pairs alone; null: at all
+    int32_t piece_limit;  ///< for a sequence and a pair of triangles; 0: 3000
     void (*progress)(void *user, int32_t cells_done, int32_t cells);
     void *user;
 } enf_hidden_options;

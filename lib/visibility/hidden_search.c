@@ -178,19 +178,39 @@ static enf_pieces_answer ask_pieces(hidden_search *search, const hidden_frame *f
     return answer;
 }
 
+/// For neighbours: a line through the middle of the only portal, square to it.
+static void make_straight_line(const hidden_search *search, int32_t portal, double from[3], double to[3]) {
+    const enf_portal_graph *graph = search->graph;
+    int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
+    double normal[3] = {0}, sign = portal & 1 ? -1 : 1;
+    memset(from, 0, 3 * sizeof *from);
+    for (int32_t c = first; c < end; c++) {
+        const double *o = graph->corners[first], *a = graph->corners[c];
+        const double *b = graph->corners[search->proof.corner_next[c]];
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            from[i] += a[i] / (end - first);
+            normal[i] += (a[j] - o[j]) * (b[k] - o[k]) - (a[k] - o[k]) * (b[j] - o[j]);
+        }
+    }
+    for (int i = 0; i < 3; i++) to[i] = from[i] + sign * normal[i];
+}
+
 bool hidden_search_pieces(hidden_search *search, const hidden_frame *frame, enf_hidden_pair *pair) {
     enf_hidden_pieces *work = &search->pieces;
     work->limit = search->options->piece_limit ? search->options->piece_limit : PIECE_LIMIT;
     search->report->asked++;
     enf_pieces_answer answer = ask_pieces(search, frame);
+    bool neighbours = frame == search->stack;
+    if (neighbours) make_straight_line(search, frame->portal, work->from, work->to);
     pair->cell[0] = enf_portal_from(search->graph, search->stack[0].portal);
     pair->cell[1] = enf_portal_to(search->graph, frame->portal);
-    if (answer == ENF_PIECES_SEEN) {
+    if (neighbours || answer == ENF_PIECES_SEEN) {
         enf_witness line = {.cell = {pair->cell[0], pair->cell[1]}};
         memcpy(line.from, work->from, sizeof line.from);
         memcpy(line.to, work->to, sizeof line.to);
-        pair->seen = true;
         pair->verified = enf_witness_check(&search->witness, &line).fault == ENF_WITNESS_HOLDS;
+        pair->seen = pair->verified || answer == ENF_PIECES_SEEN;
         memcpy(pair->from, line.from, sizeof pair->from);
         memcpy(pair->to, line.to, sizeof pair->to);
     }

@@ -25,6 +25,7 @@ typedef struct hidden_search {
     size_t words;      ///< of a row of cells
     uint64_t *visible; ///< rows, made symmetric
     int32_t *seen_count;
+    size_t only_words;       ///< of a row of options->only
     int32_t *corner_opening; ///< of each corner
     enf_facing_cells facing;
     enf_hidden_proof proof;
