@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // enfilade check: every invariant, exactly. A row per invariant; the status says whether all hold.
-#include "build/check.h"
+#include "cli/check.h"
 
 #include "build/json.h"
 #include "cli/cli.h"
@@ -10,6 +10,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void print_json(const enf_check_report *report) {
     enf_json json = {.file = stdout};
@@ -46,6 +47,14 @@ static void print_text(const enf_check_report *report) {
     }
 }
 
+void cli_print_check(const enf_check_report *report, bool as_json) {
+    if (as_json)
+        print_json(report);
+    else
+        print_text(report);
+    fflush(stdout);
+}
+
 static int check_world(const char *path, bool as_json) {
     enf_world *world = NULL;
     enf_error wrong = {0}, error = {0};
@@ -55,13 +64,7 @@ static int check_world(const char *path, bool as_json) {
     enf_check_report *report = calloc(1, sizeof *report);
     enf_status status = report ? enf_world_check(enf_world_file(world), report, &wrong)
                                : enf_fail_memory(&wrong, "the report");
-    if (status == ENF_OK || status == ENF_CHECK_FAILED) {
-        if (as_json)
-            print_json(report);
-        else
-            print_text(report);
-        fflush(stdout);
-    }
+    if (status == ENF_OK || status == ENF_CHECK_FAILED) cli_print_check(report, as_json);
     if (status) {
         enf_fail(&error, status, "%s: %.900s", path, wrong.text);
         cli_fail(&error);
@@ -71,25 +74,51 @@ static int check_world(const char *path, bool as_json) {
     return (int)status;
 }
 
+/// Is it a portal file? Its first letters say so.
+static bool is_portal_file(const char *path) {
+    char letters[3] = {0};
+    FILE *file = fopen(path, "rb");
+    if (!file) return false;
+    bool found = fread(letters, 1, sizeof letters, file) == sizeof letters && memcmp(letters, "PRT", 3) == 0;
+    fclose(file);
+    return found;
+}
+
 int cli_check(int argc, char **argv) {
-    bool as_json = false;
+    cli_visible_check visible = {0};
     cli_option options[] = {
-        {"--json", 0, CLI_FLAG, &as_json, NULL, "the rows as JSON", NULL, false},
+        {"--json", 0, CLI_FLAG, &visible.as_json, NULL, "the rows as JSON", NULL, false},
+        {"--pvs", 0, CLI_TEXT, &visible.pvs, "PVS.txt", "the visible set of a .prt file", NULL, false},
+        {"--witness", 0, CLI_TEXT, &visible.witness, "FILE", "sight lines that prove what it lists", NULL,
+         false},
+        {"--hidden", 0, CLI_FLAG, &visible.hidden, NULL, "confirm that what it leaves out is hidden", NULL,
+         false},
+        {"--sample", 0, CLI_LENGTH, &visible.sample, "SECONDS", "throw lines to find what it misses", NULL,
+         false},
         {0},
     };
     const cli_syntax syntax = {
         .command = "enfilade check",
-        .usage = "WORLD.enf [--json]",
+        .usage = "WORLD.enf|IN.prt [--json] [--pvs PVS.txt [--witness FILE] [--hidden] [--sample SECONDS]]",
         .summary =
-            "Tests every invariant of a world file with exact arithmetic. Exit status 1, and a message\n"
-            "that names the first broken one, if one does not hold.",
+            "Tests every invariant of a world file, or a visible set against the portal file that it is\n"
+            "about, with exact arithmetic. Exit status 1, and a message that names the first broken one,\n"
+            "if one does not hold.",
         .options = options,
         .operands_min = 1,
         .operands_max = 1,
         .operand = "the world file"};
     cli_texts operands = {0};
     int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status < 0) status = check_world(operands.items[0], as_json);
+    if (status < 0) {
+        visible.graph = operands.items[0];
+        if (visible.pvs)
+            status = cli_check_visible(&visible);
+        else if (visible.witness || visible.hidden || visible.sample > 0 || is_portal_file(visible.graph))
+            status = cli_misuse(&syntax, "--pvs is missing: the visible set of the .prt file");
+        else
+            status = check_world(visible.graph, visible.as_json);
+    }
     free(operands.items);
     return status;
 }

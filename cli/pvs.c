@@ -33,7 +33,9 @@ typedef struct request {
 /// The graph of a world file: its cells are those that it was compiled into.
 static enf_status read_world(enf_portal_graph *graph, const enf_source *source, enf_error *error) {
     enf_world *world = NULL;
-    enf_status status = enf_world_open_memory(&world, source->data, source->size, NULL, error);
+    enf_error wrong = {0};
+    enf_status status = enf_world_open_memory(&world, source->data, source->size, NULL, &wrong);
+    if (status) enf_fail(error, status, "%s: %.900s", source->name, wrong.text);
     if (!status) status = enf_world_graph_make(graph, enf_world_file(world), error);
     enf_world_close(world);
     return status;

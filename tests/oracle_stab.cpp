@@ -315,3 +315,17 @@ bool oracle_stab_line(const oracle_edge *edges, int count) {
     }
     return plus && minus;
 }
+
+int oracle_stab_cone(const double (*sides)[6], int count, int sign, bool *does_fall) {
+    std::vector<vector> constraints;
+    for (int k = 0; k < count; k++) {
+        vector v;
+        for (size_t i = 0; i < 6; i++) v[i] = integer(sides[k][i]);
+        constraints.push_back(v);
+    }
+    *does_fall = false;
+    if (rank_of(constraints) < 6) return 0;
+    const std::vector<vector> rays = rays_of(constraints);
+    *does_fall = falls(rays, sign);
+    return static_cast<int>(rays.size());
+}

@@ -24,6 +24,10 @@ bool oracle_stab_program(const oracle_edge *edges, int count);
 /// Is there a real line that passes all edges? oracle_stab_program must have said yes.
 bool oracle_stab_line(const oracle_edge *edges, int count);
 
+/// How many rays has the cone {x : <x, side> >= 0 for all sides} of whole numbers? 0 if the sides span fewer
+/// than six dimensions. *falls: is sign * (x0 x3 + x1 x4 + x2 x5) below 0 anywhere in it?
+int oracle_stab_cone(const double (*sides)[6], int count, int sign, bool *falls);
+
 #ifdef __cplusplus
 }
 #endif

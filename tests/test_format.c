@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "enfilade/run.h"
+#include "format/pvs_row.h"
 #include "format/read.h"
 #include "format/sections.h"
 
@@ -59,7 +60,7 @@ static void every_array_comes_back_as_it_was(void **state) {
     for (int i = 0; i < enf_section_spec_count; i++) {
         const enf_section_spec *spec = &enf_section_specs[i];
         if (strcmp(spec->tag, "STRINGS") == 0 || strcmp(spec->tag, "PROVEN") == 0 ||
-            strcmp(spec->tag, "LEAK") == 0 || strcmp(spec->tag, "TURN") == 0)
+            strcmp(spec->tag, "LEAK") == 0 || strcmp(spec->tag, "TURN") == 0 || spec->part == ENF_PART_PVS)
             continue;
         int64_t count = enf_view_count(&view, spec->dimension);
         if (strcmp(spec->tag, "GROUP") && strcmp(spec->tag, "MATERIAL"))
@@ -163,6 +164,63 @@ static void a_turn_is_kept_must_be_known_and_be_a_rotation(void **state) {
     }
     free(bytes);
     fixture_free(&f);
+}
+
+static void rows_come_back_from_their_code(void **state) {
+    (void)state;
+    uint8_t row[700], coded[2 * sizeof row], back[sizeof row];
+    uint32_t random = 1;
+    for (int32_t cells = 1; cells < 8 * (int32_t)sizeof row; cells += cells / 3 + 1) {
+        size_t bytes = enf_pvs_row_bytes(cells);
+        for (int density = 0; density < 4; density++) {
+            for (size_t i = 0; i < bytes; i++) {
+                random = random * 1664525 + 1013904223;
+                row[i] = random >> 24 >> density * 2 && density < 3 ? (uint8_t)(random >> 16) : 0;
+            }
+            row[bytes - 1] &= (uint8_t)(cells % 8 ? (1 << cells % 8) - 1 : 255);
+            size_t size = enf_pvs_row_encode(row, bytes, coded);
+            assert_true(size <= 2 * bytes);
+            assert_true(enf_pvs_row_decode(coded, size, back, cells));
+            assert_memory_equal(row, back, bytes);
+            assert_false(enf_pvs_row_decode(coded, size - 1, NULL, cells));
+            assert_false(enf_pvs_row_decode(coded, size, NULL, cells + 8));
+        }
+    }
+}
+
+static void a_visible_set_is_kept_and_looked_at(void **state) {
+    fixture_saved *s = *state;
+    enf_image image;
+    enf_error error = {0};
+    assert_int_equal(enf_image_make(&image, &s->fixture.build, "{}", &error), ENF_OK);
+    assert_int_equal(image.view.cell_count, 2);
+    const enf_file_pvs pvs = {.method = ENF_FILE_PVS_EXACT, .pairs = 4};
+    static const struct {
+        int64_t offsets[3];
+        uint8_t rows[4];
+        uint32_t method;
+        enf_status status;
+    } cases[] = {
+        {{0, 1, 2}, {3, 3}, ENF_FILE_PVS_EXACT, ENF_OK},
+        {{0, 2, 3}, {0, 1, 2}, ENF_FILE_PVS_REACH, ENF_OK},
+        {{0, 1, 2}, {3, 7}, ENF_FILE_PVS_EXACT, ENF_BAD_INPUT},       // a third cell
+        {{0, 1, 2}, {3, 0}, ENF_FILE_PVS_EXACT, ENF_BAD_INPUT},       // a zero without its number
+        {{0, 2, 4}, {0, 2, 0, 1}, ENF_FILE_PVS_EXACT, ENF_BAD_INPUT}, // two zeros
+        {{0, 2, 4}, {0, 0, 0, 1}, ENF_FILE_PVS_EXACT, ENF_BAD_INPUT}, // no zeros
+        {{0, 2, 2}, {3, 3}, ENF_FILE_PVS_EXACT, ENF_BAD_INPUT},       // too long, and too short
+        {{0, 2, 1}, {3, 3}, ENF_FILE_PVS_EXACT, ENF_BAD_INPUT},
+        {{0, 1, 2}, {3, 3}, ENF_FILE_PVS_METHODS, ENF_BAD_INPUT},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        enf_file_pvs head = pvs;
+        head.method = cases[i].method;
+        image.view.pvs = &head;
+        image.view.pvs_offset = cases[i].offsets;
+        image.view.pvs_rows = cases[i].rows;
+        image.view.pvs_byte_count = cases[i].offsets[2];
+        if (enf_view_check(&image.view, &error) != cases[i].status) fail_msg("case %zu: %s", i, error.text);
+    }
+    enf_image_free(&image);
 }
 
 static void portals_face_the_cell_they_lead_from(void **state) {
@@ -527,6 +585,8 @@ int main(void) {
         cmocka_unit_test(sections_are_aligned_and_padding_is_zero),
         cmocka_unit_test(neighbours_share_the_face_between_them),
         cmocka_unit_test(a_turn_is_kept_must_be_known_and_be_a_rotation),
+        cmocka_unit_test(rows_come_back_from_their_code),
+        cmocka_unit_test(a_visible_set_is_kept_and_looked_at),
         cmocka_unit_test(portals_face_the_cell_they_lead_from),
         cmocka_unit_test(triangles_keep_the_inputs_corners_and_cells_list_what_they_see),
         cmocka_unit_test(every_changed_byte_is_noticed),

@@ -100,8 +100,42 @@ static void the_content_tells_what_file_it_is(void **state) {
     assert_string_equal(ran.out, ROW_SETS);
     process_free(&ran);
     write_text("world.prt", "ENFILADE and so on");
-    expect_failure("pvs world.prt -o out.txt", 2,
-                   "world.prt: visibility of compiled worlds is not built yet");
+    expect_failure("pvs world.prt -o out.txt", 3, "world.prt: this is not a world file");
+}
+
+/// The sets in a world file are those that `pvs` finds in it, and check looks at them.
+static void worlds_have_visible_sets(void **state) {
+    (void)state;
+    static const char *const methods[] = {"facing", "hourglass", "exact"};
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        char line[256], words[64];
+        process made = expect_success(NULL, "gen four-rooms -o rooms.obj");
+        process_free(&made);
+        snprintf(line, sizeof line, "compile rooms.obj -o rooms.enf --pvs %s --report rooms.json",
+                 methods[i]);
+        made = expect_success(NULL, line);
+        process_free(&made);
+        size_t size;
+        char *report = read_file("rooms.json", &size);
+        assert_non_null(report);
+        snprintf(words, sizeof words, "\"method\": \"%s\"", methods[i]);
+        assert_non_null(strstr(report, words));
+        assert_non_null(strstr(report, "\"pairs\": 57"));
+        free(report);
+        snprintf(line, sizeof line, "pvs rooms.enf -o - --method %s -q", methods[i]);
+        process ran = expect_success(NULL, line);
+        int numbers = 0, lines = 0;
+        for (const char *at = ran.out; *at; at++) {
+            numbers += *at == ' ' || *at == '\n';
+            lines += *at == '\n';
+        }
+        assert_int_equal(lines, 9);
+        assert_int_equal(numbers, 57);
+        process_free(&ran);
+        ran = expect_success(NULL, "check rooms.enf");
+        assert_non_null(strstr(ran.out, "visibility: lines"));
+        process_free(&ran);
+    }
 }
 
 static void the_report_has_the_fixed_keys(void **state) {
@@ -117,9 +151,12 @@ static void the_report_has_the_fixed_keys(void **state) {
         "\"cells_budgeted\": 0",
         "\"portal_pairs\": ",
         "\"nodes\": ",
-        "\"rays\": ",
-        "\"lp_calls\": ",
-        "\"exact_calls\": ",
+        "\"visits\": ",
+        "\"lines\": ",
+        "\"pairs_open\": ",
+        "\"stabs\": {",
+        "\"quadrics_hidden\": ",
+        "\"pairs_budgeted\": 0",
         "\"sequence_longest\": ",
         "\"sequence_lengths\": [",
         "\"seconds\": ",
@@ -246,6 +283,7 @@ int main(void) {
         cmocka_unit_test(visible_sets_are_written_as_text),
         cmocka_unit_test(input_and_output_may_be_streams),
         cmocka_unit_test(the_content_tells_what_file_it_is),
+        cmocka_unit_test(worlds_have_visible_sets),
         cmocka_unit_test(the_report_has_the_fixed_keys),
         cmocka_unit_test(the_witness_file_is_there_when_asked_for),
         cmocka_unit_test(cells_that_are_not_convex_are_warned_of),

@@ -28,8 +28,7 @@ void enf_cone_init(enf_cone *cone) {
 
 void enf_cone_free(enf_cone *cone) {
     for (int32_t i = 0; i < cone->made; i++) {
-        for (int k = 0; k < ENF_PLUECKER; k++) mpz_clear(cone->rays[i]->at[k]);
-        free(cone->rays[i]);
+        for (int k = 0; k < ENF_PLUECKER; k++) mpz_clear(cone->rays[i].at[k]);
     }
     for (int32_t i = 0; i < cone->capacity; i++) mpz_clear(cone->values[i]);
     for (int32_t i = 0; i < cone->sides_made; i++) {
@@ -42,7 +41,7 @@ void enf_cone_free(enf_cone *cone) {
 
 static bool grow(enf_cone *cone) {
     const int32_t capacity = cone->capacity + cone->capacity / 2 + 32;
-    enf_cone_ray **rays = realloc(cone->rays, sizeof *rays * (size_t)capacity);
+    enf_cone_ray *rays = realloc(cone->rays, sizeof *rays * (size_t)capacity);
     if (!rays) return false;
     cone->rays = rays;
     mpz_t *values = realloc(cone->values, sizeof *values * (size_t)capacity);
@@ -56,12 +55,10 @@ static bool grow(enf_cone *cone) {
 static enf_cone_ray *new_ray(enf_cone *cone) {
     if (cone->ray_count == cone->capacity && !grow(cone)) return NULL;
     if (cone->ray_count == cone->made) {
-        enf_cone_ray *ray = malloc(sizeof *ray);
-        if (!ray) return NULL;
-        for (int k = 0; k < ENF_PLUECKER; k++) mpz_init(ray->at[k]);
-        cone->rays[cone->made++] = ray;
+        for (int k = 0; k < ENF_PLUECKER; k++) mpz_init(cone->rays[cone->made].at[k]);
+        cone->made++;
     }
-    enf_cone_ray *ray = cone->rays[cone->ray_count++];
+    enf_cone_ray *ray = &cone->rays[cone->ray_count++];
     memset(ray->tight, 0, sizeof ray->tight);
     return ray;
 }
@@ -151,13 +148,13 @@ static bool are_adjacent(const enf_cone *cone, int32_t a, int32_t b, int32_t cou
     uint64_t both[ENF_CONE_WORDS];
     int bits = 0;
     for (int w = 0; w < words; w++) {
-        both[w] = cone->rays[a]->tight[w] & cone->rays[b]->tight[w];
+        both[w] = cone->rays[a].tight[w] & cone->rays[b].tight[w];
         bits += __builtin_popcountll(both[w]);
     }
     if (bits < ENF_PLUECKER - 2) return false;
     for (int32_t i = 0; i < count; i++) {
         uint64_t missing = i == a || i == b;
-        for (int w = 0; w < words; w++) missing |= both[w] & ~cone->rays[i]->tight[w];
+        for (int w = 0; w < words; w++) missing |= both[w] & ~cone->rays[i].tight[w];
         if (!missing) return false;
     }
     return true;
@@ -168,11 +165,10 @@ static bool add_meeting(enf_cone *cone, int32_t a, int32_t b) {
     enf_cone_ray *ray = new_ray(cone);
     if (!ray) return false;
     for (int k = 0; k < ENF_PLUECKER; k++) {
-        mpz_mul(ray->at[k], cone->rays[b]->at[k], cone->values[a]);
-        mpz_submul(ray->at[k], cone->rays[a]->at[k], cone->values[b]);
+        mpz_mul(ray->at[k], cone->rays[b].at[k], cone->values[a]);
+        mpz_submul(ray->at[k], cone->rays[a].at[k], cone->values[b]);
     }
-    for (int w = 0; w < ENF_CONE_WORDS; w++)
-        ray->tight[w] = cone->rays[a]->tight[w] & cone->rays[b]->tight[w];
+    for (int w = 0; w < ENF_CONE_WORDS; w++) ray->tight[w] = cone->rays[a].tight[w] & cone->rays[b].tight[w];
     set_tight(ray, cone->side_count);
     finish_ray(ray);
     return true;
@@ -183,8 +179,8 @@ static void drop_outside(enf_cone *cone, int32_t count) {
     int32_t kept = 0;
     for (int32_t i = 0; i < cone->ray_count; i++) {
         if (i < count && mpz_sgn(cone->values[i]) < 0) continue;
-        if (i < count && mpz_sgn(cone->values[i]) == 0) set_tight(cone->rays[i], cone->side_count);
-        enf_cone_ray *ray = cone->rays[kept];
+        if (i < count && mpz_sgn(cone->values[i]) == 0) set_tight(&cone->rays[i], cone->side_count);
+        const enf_cone_ray ray = cone->rays[kept];
         cone->rays[kept++] = cone->rays[i];
         cone->rays[i] = ray;
     }
@@ -193,7 +189,7 @@ static void drop_outside(enf_cone *cone, int32_t count) {
 
 bool enf_cone_cut(enf_cone *cone, mpz_t *side) {
     const int32_t count = cone->ray_count;
-    for (int32_t i = 0; i < count; i++) enf_whole_dot(cone->values[i], cone->rays[i]->at, side);
+    for (int32_t i = 0; i < count; i++) enf_whole_dot(cone->values[i], cone->rays[i].at, side);
     for (int32_t a = 0; a < count; a++) {
         for (int32_t b = 0; mpz_sgn(cone->values[a]) > 0 && b < count; b++) {
             if (mpz_sgn(cone->values[b]) >= 0 || !are_adjacent(cone, a, b, count)) continue;

@@ -20,7 +20,7 @@ typedef struct enf_cone_ray {
 } enf_cone_ray;
 
 typedef struct enf_cone {
-    enf_cone_ray **rays; ///< ray_count in use; `made` exist
+    enf_cone_ray *rays; ///< ray_count in use; `made` exist
     int32_t ray_count, made, capacity;
     enf_whole_vector sides[ENF_CONE_SIDES];
     int32_t side_count, sides_made;

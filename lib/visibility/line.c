@@ -9,24 +9,29 @@
 #include <math.h>
 #include <string.h>
 
-/// Below this, products of three could have lost bits to underflow.
+/// Below this, times the size of the line's direction, products of two could have lost bits to underflow.
 #define TINY 0x1p-900
 
 static void subtract(const double a[3], const double b[3], double difference[3]) {
     for (int i = 0; i < 3; i++) difference[i] = a[i] - b[i];
 }
 
+static bool same_point(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; // -0 is 0
+}
+
 /// Sign of det(along, a - from, b - from), or 0 if doubles cannot tell.
 static int side_quickly(const double along[3], const double a[3], const double b[3]) {
-    double sum = 0, magnitude = 0;
+    double sum = 0, magnitude = 0, reach = 1;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         double one = a[j] * b[k], two = a[k] * b[j];
         sum += along[i] * (one - two);
         magnitude += fabs(along[i]) * (fabs(one) + fabs(two));
+        reach += fabs(along[i]);
     }
     // As in base/exact.c: 8 roundings and a little. NaN and infinity fail the comparison.
-    if (!(fabs(sum) > 10 * 0x1p-53 * magnitude) || !(fabs(sum) > TINY) || isinf(magnitude)) return 0;
+    if (!(fabs(sum) > 10 * 0x1p-53 * magnitude) || !(fabs(sum) > TINY * reach) || isinf(magnitude)) return 0;
     return sum > 0 ? 1 : -1;
 }
 
@@ -43,7 +48,7 @@ int enf_line_passes_quickly(const enf_line *line, const enf_portal_graph *graph,
         if (side == -wanted) return -1;
         if (side == wanted)
             edges++;
-        else if (memcmp(graph->corners[i], graph->corners[before], sizeof *graph->corners) != 0)
+        else if (!same_point(graph->corners[i], graph->corners[before]))
             unsure++;
         memcpy(a, b, sizeof a);
     }
@@ -74,12 +79,21 @@ static int side_exactly(const enf_line *line, const double a[3], const double b[
     return sign;
 }
 
+int enf_line_side(const enf_line *line, const double a[3], const double b[3]) {
+    double along[3], to_a[3], to_b[3];
+    subtract(line->to, line->from, along);
+    subtract(a, line->from, to_a);
+    subtract(b, line->from, to_b);
+    int side = side_quickly(along, to_a, to_b);
+    return side ? side : side_exactly(line, a, b);
+}
+
 static bool passes_exactly(const enf_line *line, const enf_portal_graph *graph, int32_t portal) {
     const int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
     int edges = 0;
     for (int32_t i = first, before = end - 1; i < end; before = i++) {
         const double *a = graph->corners[before], *b = graph->corners[i];
-        if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]) continue;
+        if (same_point(a, b)) continue;
         if (side_exactly(line, a, b) != (portal & 1 ? -1 : 1)) return false;
         edges++;
     }

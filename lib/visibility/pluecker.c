@@ -12,6 +12,34 @@
 #define LARGE 0x1p200
 #define SMALL 0x1p-200
 
+static int64_t common_divisor(int64_t a, int64_t b) {
+    while (b) {
+        const int64_t rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a < 0 ? -a : a;
+}
+
+/// The direction in whole numbers without common divisor, if these are small.
+static void set_small(enf_pluecker_edge *edge) {
+    const int unit = enf_point_unit(edge->to, enf_point_unit(edge->from, ENF_NO_UNIT));
+    int64_t along[3], divisor = 0;
+    edge->unit = enf_point_unit(edge->from, ENF_NO_UNIT);
+    if (unit < -1000 || unit > 1000) return;
+    for (int i = 0; i < 3; i++) {
+        const double from = ldexp(edge->from[i], -unit), to = ldexp(edge->to[i], -unit);
+        if (!(fabs(from) < 0x1p61 && fabs(to) < 0x1p61)) return;
+        along[i] = (int64_t)to - (int64_t)from;
+        divisor = common_divisor(divisor, along[i]);
+    }
+    for (int i = 0; divisor && i < 3; i++) {
+        if (along[i] / divisor > 1 << 24 || along[i] / divisor < -(1 << 24)) return;
+        edge->small[i] = (int32_t)(along[i] / divisor);
+    }
+    edge->is_small = divisor != 0;
+}
+
 static bool edge_make(enf_pluecker_edge *edge, const double from[3], const double to[3]) {
     double square = 0;
     memcpy(edge->from, from, sizeof edge->from);
@@ -20,6 +48,7 @@ static bool edge_make(enf_pluecker_edge *edge, const double from[3], const doubl
         edge->along[i] = to[i] - from[i];
         square += edge->along[i] * edge->along[i];
     }
+    set_small(edge);
     const double length = sqrt(square);
     if (!(length > SMALL && length < LARGE)) return false;
     for (int i = 0; i < 3; i++) edge->along[i] /= length;

@@ -12,7 +12,10 @@
 
 typedef struct enf_pluecker_edge {
     double from[3], to[3];
-    double along[3]; ///< unit length, within 8 roundings
+    double along[3];  ///< unit length, within 8 roundings
+    int32_t small[3]; ///< a multiple of to - from, without common divisor, at most 2^24
+    bool is_small;    ///< there is such
+    int unit;         ///< from is a multiple of 2^unit
 } enf_pluecker_edge;
 
 typedef struct enf_pluecker_opening {

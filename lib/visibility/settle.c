@@ -169,7 +169,7 @@ static bool add_late(settling *settling) {
     return true;
 }
 
-static bool make_settling(settling *settling, const enf_pluecker *pluecker, int threads) {
+static bool make_settling(settling *settling, int threads) {
     const enf_settlement *settlement = settling->settlement;
     size_t cells = (size_t)settlement->shapes->graph->cell_count;
     settling->work = enf_array_zeroed(cells, sizeof *settling->work);
@@ -186,7 +186,7 @@ static bool make_settling(settling *settling, const enf_pluecker *pluecker, int 
         settler->sightings = settling->sightings;
         settler->flow = enf_flow_new(&(enf_flow_options){.shapes = settlement->shapes,
                                                          .beams = settlement->beams,
-                                                         .pluecker = pluecker,
+                                                         .pluecker = settlement->pluecker,
                                                          .exact = settlement->exact,
                                                          .seen = note,
                                                          .user = settler});
@@ -239,12 +239,9 @@ static enf_status settle_all(settling *settling, enf_workplace *place, enf_error
 enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, enf_workplace *place,
                           enf_error *error) {
     settling settling = {.settlement = settlement, .sightings = sightings};
-    enf_pluecker pluecker = {0};
-    enf_status status = enf_pluecker_make(&pluecker, settlement->shapes->graph) &&
-                                make_settling(&settling, &pluecker, place->crew.threads)
+    enf_status status = make_settling(&settling, place->crew.threads)
                             ? settle_all(&settling, place, error)
                             : enf_fail_memory(error, "the portal sequences");
     free_settling(&settling, place->crew.threads);
-    enf_pluecker_free(&pluecker);
     return status;
 }

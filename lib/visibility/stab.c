@@ -37,29 +37,39 @@ const enf_stab_counts *enf_stabber_counts(const enf_stabber *stabber) {
     return &stabber->counts;
 }
 
+/// Does a certificate show that there is no solution?
+static bool is_certain(enf_stabber *stabber) {
+    int32_t members[ENF_HULL_MAX];
+    if (enf_stabber_zero_by_double(stabber)) {
+        stabber->counts.zero_by_double++;
+        return true;
+    }
+    const int count = enf_stabber_members(stabber, members);
+    if (enf_stabber_zero_by_small(stabber, members, count)) {
+        stabber->counts.zero_by_small++;
+        return true;
+    }
+    if (!enf_stabber_zero_by_whole(stabber, members, count)) return false;
+    stabber->counts.zero_by_whole++;
+    return true;
+}
+
 /// Is there a strict solution? Then hull.x is one, or `point`.
 static enf_status decide_program(enf_stabber *stabber, const enf_line *start, bool *feasible,
                                  enf_error *error) {
     double x[ENF_PLUECKER];
-    enf_min_norm_answer answer = ENF_MIN_NORM_STUCK;
     stabber->hull = (enf_min_norm){0};
     if (!stabber->rough) {
         enf_stabber_coordinates(stabber, start, x);
-        answer = enf_min_norm_find(stabber->vectors, stabber->edge_count, stabber->capacity, x,
-                                   ENF_STAB_MARGIN, 0, stabber->products, &stabber->hull);
+        *feasible =
+            enf_min_norm_find(stabber->vectors, stabber->edge_count, stabber->capacity, x, ENF_STAB_MARGIN, 0,
+                              stabber->products, &stabber->hull) == ENF_MIN_NORM_POSITIVE;
+        if (*feasible || is_certain(stabber)) return ENF_OK;
     }
-    *feasible = answer == ENF_MIN_NORM_POSITIVE;
-    if (*feasible) return ENF_OK;
-    if (answer == ENF_MIN_NORM_ZERO && enf_stabber_zero_by_double(stabber)) {
-        stabber->counts.zero_by_double++;
-    } else if (answer == ENF_MIN_NORM_ZERO && enf_stabber_zero_by_whole(stabber)) {
-        stabber->counts.zero_by_whole++;
-    } else {
-        stabber->counts.programs++;
-        if (!enf_stabber_order(stabber) || !enf_stabber_whole_edges(stabber))
-            return enf_fail_memory(error, "a portal sequence's edges");
-        *feasible = !enf_stabber_program(stabber);
-    }
+    stabber->counts.programs++;
+    if (!enf_stabber_order(stabber) || !enf_stabber_whole_edges(stabber))
+        return enf_fail_memory(error, "a portal sequence's edges");
+    *feasible = !enf_stabber_program(stabber);
     return ENF_OK;
 }
 
@@ -70,7 +80,7 @@ static void set_line(enf_stab *stab, const enf_line *line) {
 /// The hint, and whether the relaxation has a solution: HIDDEN, OPEN or VISIBLE.
 static enf_status begin(enf_stabber *stabber, const int32_t *sequence, int32_t count, const enf_line *hint,
                         enf_stab *stab, enf_error *error) {
-    bool feasible;
+    bool feasible = false;
     *stab = (enf_stab){.answer = ENF_STAB_HIDDEN};
     stabber->counts.calls++;
     stabber->sequence = sequence;

@@ -25,7 +25,8 @@ typedef struct enf_stab {
 typedef struct enf_stab_counts {
     int64_t calls, hints;   ///< calls; those that the hint answered
     int64_t zero_by_double; ///< hidden: 0 is in a hull, shown by doubles
-    int64_t zero_by_whole;  ///< the same, shown by whole numbers
+    int64_t zero_by_small;  ///< the same, shown by whole numbers of 64 bits
+    int64_t zero_by_whole;  ///< the same, shown by whole numbers of any size
     int64_t programs;       ///< linear programs in whole numbers
     int64_t pivots;         ///< of these
     int64_t searched;       ///< lines that took a search

@@ -127,30 +127,29 @@ static bool weights_have_one_sign(const system *s) {
     return true;
 }
 
-/// The members that are needed: what weighs next to nothing is there by rounding.
-static int chosen_members(const enf_min_norm *hull, int32_t chosen[ENF_HULL_MAX]) {
+int enf_stabber_members(const enf_stabber *stabber, int32_t members[ENF_HULL_MAX]) {
+    const enf_min_norm *hull = &stabber->hull;
     int count = 0;
     for (int n = 0; n < hull->size; n++) {
-        if (hull->weight[n] > 1e-9) chosen[count++] = hull->member[n];
+        if (hull->weight[n] > 1e-9) members[count++] = hull->member[n];
     }
     return count;
 }
 
-bool enf_stabber_zero_by_whole(const enf_stabber *stabber) {
-    int32_t chosen[ENF_HULL_MAX];
-    system s = {.size = chosen_members(&stabber->hull, chosen)};
+bool enf_stabber_zero_by_whole(const enf_stabber *stabber, const int32_t *members, int count) {
+    system s = {.size = count};
     mpz_t vector[ENF_PLUECKER];
-    if (s.size < 2) return false;
+    if (count < 2) return false;
     mpz_inits(s.divisor, s.term, NULL);
     for (int i = 0; i < ENF_PLUECKER; i++) mpz_init(vector[i]);
-    for (int n = 0; n < s.size; n++) {
-        enf_stabber_whole_edge(stabber, chosen[n], vector);
+    for (int n = 0; n < count; n++) {
+        enf_stabber_whole_edge(stabber, members[n], vector);
         for (int i = 0; i < ENF_PLUECKER; i++) mpz_init_set(s.entry[i][n], vector[i]);
     }
     eliminate(&s);
-    const bool zero = s.rank == s.size - 1 && weights_have_one_sign(&s);
+    const bool zero = s.rank == count - 1 && weights_have_one_sign(&s);
     for (int i = 0; i < ENF_PLUECKER; i++) {
-        for (int n = 0; n < s.size; n++) mpz_clear(s.entry[i][n]);
+        for (int n = 0; n < count; n++) mpz_clear(s.entry[i][n]);
         mpz_clear(vector[i]);
     }
     mpz_clears(s.divisor, s.term, NULL);

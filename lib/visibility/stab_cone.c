@@ -145,8 +145,11 @@ static void set_meeting(enf_stabber *stabber, enf_quadric *q) {
         b += q->sign * x[i] * y[(i + 3) % ENF_PLUECKER];
         c += q->sign * y[i] * y[(i + 3) % ENF_PLUECKER];
     }
-    // a + 2 b s + c s^2 = 0, a > 0 > c, s > 0
-    const double root = sqrt(b * b - a * c), s = b > 0 ? (b + root) / -c : a / (root - b);
+    // a + 2 b s + c s^2 = 0, a > 0 > c, s > 0; but these are rounded
+    const double root = sqrt(fmax(b * b - a * c, 0));
+    double s = b > 0 ? (b + root) / -c : a / (root - b);
+    if (!(a > 0)) s = 0;
+    if (!(c < 0)) s = HUGE_VAL;
     for (int i = 0; i < ENF_PLUECKER; i++) stabber->hull.x[i] = s < 1 ? x[i] + s * y[i] : x[i] / s + y[i];
 }
 

@@ -7,7 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEPS = 12 };
+/// The search gives up after so many steps, or when a step keeps so much of the form: it ends at a least
+/// value that is not 0, most often because there is no line.
+enum { STEPS = 40 };
+static const double kept_at_most = 0.95;
 
 static double dot3(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -94,30 +97,54 @@ static void make_unit(double x[ENF_PLUECKER]) {
     for (int i = 0; i < ENF_PLUECKER; i++) x[i] /= length;
 }
 
-/// Of the points x + s y, s > 0: where the form is first 0, or else where it is least in size. It falls from
-/// x towards y.
+static double dot6(const double x[ENF_PLUECKER], const double y[ENF_PLUECKER]) {
+    return dot3(x, y) + dot3(x + 3, y + 3);
+}
+
+/// The least s > 0 with a + b s + c s^2 = 0, a < 0; infinity if there is none.
+static double first_root(double a, double b, double c) {
+    const double under_root = b * b - 4 * a * c;
+    if (!(under_root >= 0)) return HUGE_VAL;
+    const double root = sqrt(under_root);
+    if (b > 0) return -2 * a / (b + root);
+    return c > 0 ? (root - b) / (2 * c) : HUGE_VAL;
+}
+
+/// Of the points x + s y, s > 0: where the form is first 0, or else where its quotient with the square of the
+/// length is least. Both are of unit length; the quotient falls from x towards y.
 static void step(double x[ENF_PLUECKER], const double y[ENF_PLUECKER]) {
     const double sign = form(x, x) < 0 ? -1 : 1;
-    const double a = sign * form(x, x), b = sign * form(x, y), c = sign * form(y, y);
-    const double under_root = b * b - a * c;
-    const double s = under_root >= 0 ? a / (sqrt(under_root) - b) : -b / c;
-    for (int i = 0; i < ENF_PLUECKER; i++) x[i] += s * y[i];
+    const double a = sign * form(x, x), b = sign * form(x, y), c = sign * form(y, y), d = dot6(x, y);
+    double s = first_root(-a, -2 * b, -c);
+    if (s == HUGE_VAL) s = first_root(b - a * d, c - a, c * d - b);
+    for (int i = 0; i < ENF_PLUECKER; i++) x[i] = s < HUGE_VAL ? x[i] + s * y[i] : y[i];
     make_unit(x);
 }
 
-/// Another point of the open cone towards which the form falls: one constraint more.
-static bool turn_to(enf_stabber *stabber, const double x[ENF_PLUECKER], double y[ENF_PLUECKER]) {
+/// A point y of the open cone with <y, down> > 0: one constraint more.
+static bool go_down(enf_stabber *stabber, double down[ENF_PLUECKER], double y[ENF_PLUECKER]) {
     const size_t stride = (size_t)stabber->capacity;
-    const double sign = form(x, x) < 0 ? 1 : -1;
     enf_min_norm hull;
+    make_unit(down);
     for (int i = 0; i < ENF_PLUECKER; i++)
-        stabber->vectors[(size_t)i * stride + (size_t)stabber->edge_count] = sign * x[(i + 3) % ENF_PLUECKER];
+        stabber->vectors[(size_t)i * stride + (size_t)stabber->edge_count] = down[i];
     if (enf_min_norm_find(stabber->vectors, stabber->edge_count + 1, stabber->capacity, NULL, ENF_STAB_MARGIN,
-                          0.1, stabber->products, &hull) != ENF_MIN_NORM_POSITIVE)
+                          0, stabber->products, &hull) != ENF_MIN_NORM_POSITIVE)
         return false;
     memcpy(y, hull.x, sizeof hull.x);
     make_unit(y);
     return true;
+}
+
+/// Another point of the open cone: one at which the form with x has the other sign, or else one towards which
+/// the form's quotient with the square of the length falls.
+static bool turn_to(enf_stabber *stabber, const double x[ENF_PLUECKER], double y[ENF_PLUECKER]) {
+    const double value = form(x, x), sign = value < 0 ? 1 : -1;
+    double down[ENF_PLUECKER];
+    for (int i = 0; i < ENF_PLUECKER; i++) down[i] = sign * x[(i + 3) % ENF_PLUECKER];
+    if (go_down(stabber, down, y)) return true;
+    for (int i = 0; i < ENF_PLUECKER; i++) down[i] = sign * (x[(i + 3) % ENF_PLUECKER] - value * x[i]);
+    return go_down(stabber, down, y);
 }
 
 bool enf_stabber_search(enf_stabber *stabber, enf_line *line) {
@@ -125,10 +152,12 @@ bool enf_stabber_search(enf_stabber *stabber, enf_line *line) {
     memcpy(x, stabber->hull.x, sizeof x);
     make_unit(x);
     for (int i = 0; i < STEPS; i++) {
+        const double before = fabs(form(x, x));
         if (enf_stabber_line(stabber, x, line) && enf_stabber_passes(stabber, line)) return true;
         if (i == 0) stabber->counts.searched++;
         if (!turn_to(stabber, x, y)) return false;
         step(x, y);
+        if (fabs(form(x, x)) > kept_at_most * before) return false;
     }
     return false;
 }

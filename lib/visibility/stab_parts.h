@@ -55,8 +55,16 @@ bool enf_stabber_order(enf_stabber *stabber);
 // ---- stab_certificate.c
 /// Do the members of the hull hold 0, whatever was rounded? False if doubles cannot tell.
 bool enf_stabber_zero_by_double(const enf_stabber *stabber);
-/// Does a combination of the members with weights >= 0 give 0? Exact, but false as well if there are two.
-bool enf_stabber_zero_by_whole(const enf_stabber *stabber);
+/// The members of the hull that are needed: what weighs next to nothing is there by rounding. Returns how
+/// many.
+int enf_stabber_members(const enf_stabber *stabber, int32_t members[ENF_HULL_MAX]);
+/// Does a combination of the members with weights >= 0 give 0? Exact, but false as well if there are two
+/// such.
+bool enf_stabber_zero_by_whole(const enf_stabber *stabber, const int32_t *members, int count);
+
+// ---- stab_small.c
+/// The same in 64 bits; false as well if these are too few.
+bool enf_stabber_zero_by_small(const enf_stabber *stabber, const int32_t *members, int count);
 
 // ---- stab_program.c
 /// Exactly: is 0 in the hull of all edges? If not, stabber->point is a strict solution. Edges are looked at

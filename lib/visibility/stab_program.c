@@ -5,6 +5,8 @@
 // fractions.
 #include "visibility/stab_parts.h"
 
+#include <math.h>
+
 enum { ROWS = ENF_PLUECKER + 1, RIGHT = ROWS, COLUMNS = ROWS + 1 };
 
 /// The inverse of the basis and the right side, times `denominator` > 0.
@@ -81,9 +83,26 @@ static void pivot(program *p, int row) {
     mpz_set(p->denominator, p->column[row]);
 }
 
+/// Is price . (vector, 1) surely not above 0? Each number is off by 2^-52 of itself, cut off.
+static bool surely_stays_out(const double about[ROWS], mpz_t *vector) {
+    double sum = about[ENF_PLUECKER], size = fabs(sum);
+    for (int i = 0; i < ENF_PLUECKER; i++) {
+        const double term = about[i] * mpz_get_d(vector[i]);
+        sum += term;
+        size += fabs(term);
+    }
+    return sum < -0x1p-48 * size && size < HUGE_VAL;
+}
+
+/// The first vector that would take something off what is left of the artificial variables; -1 if there is
+/// none.
 static int32_t entering(program *p, const enf_stabber *stabber) {
+    double about[ROWS];
+    for (int i = 0; i < ROWS; i++) about[i] = mpz_get_d(p->price[i]);
     for (int32_t k = 0; k < stabber->edge_count; k++) {
-        multiply_row(p->term, p->price, stabber->whole[stabber->order[k]]);
+        mpz_t *vector = stabber->whole[stabber->order[k]];
+        if (surely_stays_out(about, vector)) continue;
+        multiply_row(p->term, p->price, vector);
         if (mpz_sgn(p->term) > 0) return k;
     }
     return -1;

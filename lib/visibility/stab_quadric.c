@@ -42,7 +42,7 @@ static void set_form(mpz_t out, mpz_t *a, mpz_t *b, int sign) {
 
 static bool ray_falls(enf_quadric *q) {
     for (int32_t i = 0; i < q->cone.ray_count; i++) {
-        enf_cone_ray *ray = q->cone.rays[i];
+        enf_cone_ray *ray = &q->cone.rays[i];
         if (surely_positive(ray->about, ray->about, q->sign)) continue;
         set_form(q->a, ray->at, ray->at, q->sign);
         if (mpz_sgn(q->a) >= 0) continue;
@@ -72,7 +72,7 @@ static bool edge_falls(enf_quadric *q, bool *mixed) {
     *mixed = false;
     for (int32_t i = 0; i < q->cone.ray_count; i++) {
         for (int32_t j = 0; j < i; j++) {
-            enf_cone_ray *r = q->cone.rays[i], *s = q->cone.rays[j];
+            enf_cone_ray *r = &q->cone.rays[i], *s = &q->cone.rays[j];
             if (surely_positive(r->about, s->about, q->sign)) continue;
             set_form(q->b, r->at, s->at, q->sign);
             if (mpz_sgn(q->b) >= 0) continue;
@@ -96,7 +96,7 @@ static int32_t rays_in(const enf_quadric *q, const int32_t *side, int count) {
     int32_t rays = 0;
     for (int32_t i = 0; i < q->cone.ray_count; i++) {
         bool tight = true;
-        for (int k = 0; k < count; k++) tight &= q->cone.rays[i]->tight[side[k] / 64] >> side[k] % 64 & 1;
+        for (int k = 0; k < count; k++) tight &= q->cone.rays[i].tight[side[k] / 64] >> side[k] % 64 & 1;
         rays += tight;
     }
     return rays;
@@ -172,15 +172,19 @@ static bool face_falls(enf_quadric *q) {
 
 bool enf_quadric_falls(enf_quadric *q) {
     bool mixed;
-    if (ray_falls(q) || edge_falls(q, &mixed)) return true;
+    q->steps = 1;
+    if (ray_falls(q)) return true;
+    q->steps = 2;
+    if (edge_falls(q, &mixed)) return true;
+    q->steps = 3;
     return mixed && face_falls(q);
 }
 
 // ---------------------------------------------------------------------------------------------- scratch
 
 static void each_number(enf_quadric *q, void (*act)(mpz_ptr)) {
-    mpz_ptr const single[] = {q->a, q->b, q->c, q->d, q->determinant};
-    for (size_t i = 0; i < sizeof single / sizeof *single; i++) act(single[i]);
+    mpz_ptr const single[5] = {q->a, q->b, q->c, q->d, q->determinant};
+    for (int i = 0; i < 5; i++) act(single[i]);
     for (int k = 0; k < ENF_PLUECKER; k++) {
         act(q->witness[k]);
         act(q->slice[k]);

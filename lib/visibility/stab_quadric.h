@@ -10,6 +10,7 @@ typedef struct enf_quadric {
     enf_cone cone;
     int sign;                 ///< +1 or -1: what Q is multiplied by
     enf_whole_vector witness; ///< of enf_quadric_falls
+    int steps;                ///< what decided: 1 rays, 2 edges, 3 larger faces
     enf_whole_vector slice;   ///< the sum of the sides
     mpz_t a, b, c, d, determinant, g[3], mu[3], gram[3][3];
     enf_whole_vector completing[ENF_PLUECKER]; ///< sides that make a cone pointed

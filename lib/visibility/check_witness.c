@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// On which side of an edge does a line pass? The sign of a 3 by 3 determinant: by doubles with Shewchuk's
+// error bound ("Adaptive precision floating-point arithmetic", 1997), else by whole numbers of any size.
+#include "visibility/check_witness.h"
+
+#include "base/array.h"
+#include "visibility/whole_number.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { VECTORS = 3 }; // from the line's first point to: the edge's ends, the line's second point
+
+/// Relative to the sum of the terms' magnitudes: (7 + 56 u) u with u = 2^-53.
+static const double side_error = 7.78e-16;
+/// Below this, products may have lost digits by underflow.
+static const double side_least = 1e-250;
+
+typedef struct witness_numbers {
+    mpz_t origin[3];
+    mpz_t vector[VECTORS][3];
+    mpz_t sum, product;
+} witness_numbers;
+
+bool enf_witness_checker_make(enf_witness_checker *checker, const enf_portal_graph *graph) {
+    *checker = (enf_witness_checker){.graph = graph};
+    witness_numbers *numbers = malloc(sizeof *numbers);
+    if (!numbers) return false;
+    mpz_inits(numbers->sum, numbers->product, NULL);
+    for (int i = 0; i < 3; i++) {
+        mpz_init(numbers->origin[i]);
+        for (int k = 0; k < VECTORS; k++) mpz_init(numbers->vector[k][i]);
+    }
+    checker->numbers = numbers;
+    checker->entered = enf_array_zeroed((size_t)graph->cell_count, sizeof *checker->entered);
+    checker->queue = enf_array_new((size_t)graph->cell_count, sizeof *checker->queue);
+    return checker->entered && checker->queue;
+}
+
+void enf_witness_checker_free(enf_witness_checker *checker) {
+    witness_numbers *numbers = checker->numbers;
+    if (!numbers) return;
+    mpz_clears(numbers->sum, numbers->product, NULL);
+    for (int i = 0; i < 3; i++) {
+        mpz_clear(numbers->origin[i]);
+        for (int k = 0; k < VECTORS; k++) mpz_clear(numbers->vector[k][i]);
+    }
+    free(numbers);
+    free(checker->entered);
+    free(checker->queue);
+    *checker = (enf_witness_checker){.graph = NULL};
+}
+
+// ---------------------------------------------------------------------------------------------- sides
+
+static void multiply_add(witness_numbers *numbers, int i, int j, int k, int sign) {
+    mpz_mul(numbers->product, numbers->vector[0][i], numbers->vector[1][j]);
+    mpz_mul(numbers->product, numbers->product, numbers->vector[2][k]);
+    if (sign > 0)
+        mpz_add(numbers->sum, numbers->sum, numbers->product);
+    else
+        mpz_sub(numbers->sum, numbers->sum, numbers->product);
+}
+
+static int side_exact(enf_witness_checker *checker, const double *point[4]) {
+    witness_numbers *numbers = checker->numbers;
+    int unit = DBL_MAX_EXP;
+    for (int k = 0; k < 4; k++)
+        for (int i = 0; i < 3; i++) {
+            int bit = enf_last_bit(point[k][i]);
+            if (bit < unit) unit = bit;
+        }
+    for (int i = 0; i < 3; i++) {
+        enf_set_whole(numbers->origin[i], point[0][i], unit);
+        for (int k = 0; k < VECTORS; k++) {
+            enf_set_whole(numbers->vector[k][i], point[k + 1][i], unit);
+            mpz_sub(numbers->vector[k][i], numbers->vector[k][i], numbers->origin[i]);
+        }
+    }
+    mpz_set_ui(numbers->sum, 0);
+    for (int i = 0; i < 3; i++) {
+        multiply_add(numbers, i, (i + 1) % 3, (i + 2) % 3, 1);
+        multiply_add(numbers, i, (i + 2) % 3, (i + 1) % 3, -1);
+    }
+    checker->sides_exact++;
+    return mpz_sgn(numbers->sum);
+}
+
+/// 1: the line from -> to sees the edge a -> b turn counter-clockwise around it, seen from ahead; -1:
+/// clockwise; 0: they meet, or are parallel.
+static int side(enf_witness_checker *checker, const double from[3], const double to[3], const double a[3],
+                const double b[3]) {
+    double u[3], v[3], d[3], sum = 0, size = 0;
+    for (int i = 0; i < 3; i++) {
+        u[i] = a[i] - from[i];
+        v[i] = b[i] - from[i];
+        d[i] = to[i] - from[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double left = u[j] * v[k], right = u[k] * v[j];
+        sum += d[i] * (left - right);
+        size += fabs(d[i]) * (fabs(left) + fabs(right));
+    }
+    if (size > side_least && size < DBL_MAX && fabs(sum) > side_error * size) {
+        checker->sides_near++;
+        return sum > 0 ? 1 : -1;
+    }
+    return side_exact(checker, (const double *[4]){from, a, b, to});
+}
+
+// ---------------------------------------------------------------------------------------------- walk
+
+static bool passes(enf_witness_checker *checker, int32_t portal, const double from[3], const double to[3]) {
+    const enf_portal_graph *graph = checker->graph;
+    int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
+    int wanted = portal & 1 ? -1 : 1;
+    for (int32_t at = end - 1, next = first; next < end; at = next++)
+        if (side(checker, from, to, graph->corners[at], graph->corners[next]) != wanted) return false;
+    return true;
+}
+
+/// Queues the cells behind the portals out of a cell that the line passes; returns the queue's new length.
+static int32_t go_on(enf_witness_checker *checker, int32_t cell, const double from[3], const double to[3],
+                     int32_t count, enf_witness_outcome *outcome) {
+    const enf_portal_graph *graph = checker->graph;
+    int32_t before = outcome->steps;
+    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
+        int32_t portal = graph->cell_portals[k], next = enf_portal_to(graph, portal);
+        if (!passes(checker, portal, from, to)) continue;
+        outcome->steps++;
+        if (checker->entered[next] == checker->walks) continue;
+        checker->entered[next] = checker->walks;
+        checker->queue[count++] = next;
+    }
+    outcome->forked |= outcome->steps > before + 1;
+    return count;
+}
+
+static enf_witness_outcome walk(enf_witness_checker *checker, const int32_t cell[2], const double from[3],
+                                const double to[3]) {
+    enf_witness_outcome outcome = {.fault = ENF_WITNESS_STUCK, .cell = cell[0]};
+    int32_t count = 1;
+    checker->walks++;
+    checker->entered[cell[0]] = checker->walks;
+    checker->queue[0] = cell[0];
+    for (int32_t at = 0; at < count && outcome.fault; at++) {
+        outcome.cell = checker->queue[at];
+        if (outcome.cell == cell[1])
+            outcome.fault = ENF_WITNESS_HOLDS;
+        else
+            count = go_on(checker, outcome.cell, from, to, count, &outcome);
+    }
+    return outcome;
+}
+
+static enf_witness_fault check_words(const enf_portal_graph *graph, const enf_witness *witness) {
+    bool differ = false;
+    for (int i = 0; i < 3; i++) {
+        if (!isfinite(witness->from[i]) || !isfinite(witness->to[i])) return ENF_WITNESS_NO_LINE;
+        differ = differ || witness->from[i] != witness->to[i];
+    }
+    for (int i = 0; i < 2; i++)
+        if (witness->cell[i] < 0 || witness->cell[i] >= graph->cell_count) return ENF_WITNESS_NO_CELL;
+    return differ ? ENF_WITNESS_HOLDS : ENF_WITNESS_NO_LINE;
+}
+
+enf_witness_outcome enf_witness_check(enf_witness_checker *checker, const enf_witness *witness) {
+    enf_witness_outcome outcome = {.fault = check_words(checker->graph, witness), .cell = witness->cell[0]};
+    if (outcome.fault) return outcome;
+    outcome = walk(checker, witness->cell, witness->from, witness->to);
+    if (outcome.fault == ENF_WITNESS_HOLDS) return outcome;
+    enf_witness_outcome back = walk(checker, witness->cell, witness->to, witness->from);
+    bool further = back.fault == ENF_WITNESS_HOLDS || back.steps > outcome.steps;
+    return further ? back : outcome;
+}
+
+void enf_witness_describe(enf_witness_outcome outcome, char *text, size_t size) {
+    static const char *const words[] = {
+        [ENF_WITNESS_HOLDS] = "the line arrives in cell",
+        [ENF_WITNESS_NO_CELL] = "there is no such cell; from cell",
+        [ENF_WITNESS_NO_LINE] = "the two points are no line; from cell",
+        [ENF_WITNESS_STUCK] = "the line passes no portal out of cell",
+    };
+    snprintf(text, size, "%s %d, after %d portals", words[outcome.fault], (int)outcome.cell,
+             (int)outcome.steps);
+}

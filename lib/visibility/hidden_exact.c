@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The weights are looked for by the simplex method with Bland's rule, on a tableau of whole numbers with one
+// common denominator (Edmonds' integer pivoting): w >= 0 makes the sum of the forms <= 0 at the nine pairs of
+// corners if sum of w can grow without end under that condition; if it can't, the dual solution is a weight
+// for each pair of corners with which every form is positive.
+#include "visibility/hidden_exact.h"
+
+#include "base/array.h"
+#include "visibility/whole_number.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { PAIRS = 9, ROWS = PAIRS + 1, STEPS_MAX = 400 };
+
+typedef mpz_t form[PAIRS]; ///< values at the pairs of corners p, q, as [3 p + q]
+
+struct enf_hidden_exact {
+    const enf_piece_task *task;
+    int unit;
+    form *forms; ///< of each edge of the task; those with is_made
+    bool *is_made;
+    size_t form_count; ///< initialised
+    mpz_t *table;      ///< ROWS by width
+    size_t table_count;
+    mpz_t point[4][3];
+    form total;
+    mpz_t product, denominator, share[2][3];
+};
+
+enf_hidden_exact *enf_hidden_exact_make(const enf_portal_graph *graph) {
+    enf_hidden_exact *exact = calloc(1, sizeof *exact);
+    if (!exact) return NULL;
+    exact->unit = enf_last_bit_of_graph(graph);
+    mpz_inits(exact->product, exact->denominator, NULL);
+    for (int k = 0; k < PAIRS; k++) mpz_init(exact->total[k]);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 4; k++) mpz_init(exact->point[k][i]);
+        for (int s = 0; s < 2; s++) mpz_init(exact->share[s][i]);
+    }
+    return exact;
+}
+
+void enf_hidden_exact_free(enf_hidden_exact *exact) {
+    if (!exact) return;
+    mpz_clears(exact->product, exact->denominator, NULL);
+    for (int k = 0; k < PAIRS; k++) mpz_clear(exact->total[k]);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 4; k++) mpz_clear(exact->point[k][i]);
+        for (int s = 0; s < 2; s++) mpz_clear(exact->share[s][i]);
+    }
+    for (size_t k = 0; k < exact->form_count; k++)
+        for (int pair = 0; pair < PAIRS; pair++) mpz_clear(exact->forms[k][pair]);
+    for (size_t k = 0; k < exact->table_count; k++) mpz_clear(exact->table[k]);
+    free(exact->forms);
+    free(exact->is_made);
+    free(exact->table);
+    free(exact);
+}
+
+bool enf_hidden_exact_begin(enf_hidden_exact *exact, const enf_piece_task *task) {
+    size_t wanted = (size_t)task->edge_count;
+    if (wanted > exact->form_count) {
+        size_t forms = exact->form_count, flags = exact->form_count;
+        if (!enf_array_reserve(exact->forms, forms, wanted) ||
+            !enf_array_reserve(exact->is_made, flags, wanted))
+            return false;
+        for (; exact->form_count < wanted; exact->form_count++)
+            for (int pair = 0; pair < PAIRS; pair++) mpz_init(exact->forms[exact->form_count][pair]);
+    }
+    for (size_t k = 0; k < wanted; k++) exact->is_made[k] = false;
+    exact->task = task;
+    return true;
+}
+
+// ---------------------------------------------------------------------------------------------- forms
+
+/// out = the side of the edge point[1], point[2] on which the line point[0], point[3] passes. Points 1 to 3
+/// are made relative to point 0.
+static void make_side(enf_hidden_exact *exact, mpz_t out) {
+    mpz_t(*v)[3] = exact->point;
+    for (int k = 1; k < 4; k++)
+        for (int i = 0; i < 3; i++) mpz_sub(v[k][i], v[k][i], v[0][i]);
+    mpz_set_ui(out, 0);
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        mpz_mul(exact->product, v[1][j], v[2][k]);
+        mpz_submul(exact->product, v[1][k], v[2][j]);
+        mpz_addmul(out, exact->product, v[3][i]);
+    }
+}
+
+static void set_point(enf_hidden_exact *exact, int k, int32_t corner) {
+    for (int i = 0; i < 3; i++)
+        enf_set_whole(exact->point[k][i], exact->task->graph->corners[corner][i], exact->unit);
+}
+
+/// The form of an edge, made when it is first needed.
+static mpz_t *form_of(enf_hidden_exact *exact, int32_t k) {
+    const enf_piece_task *task = exact->task;
+    if (exact->is_made[k]) return exact->forms[k];
+    int32_t corner[2] = {task->edges[k] >> 1, task->corner_next[task->edges[k] >> 1]};
+    int turned = task->edges[k] & 1;
+    for (int p = 0; p < 3; p++)
+        for (int q = 0; q < 3; q++) {
+            set_point(exact, 0, task->triangle[0][p]);
+            set_point(exact, 1, corner[turned]);
+            set_point(exact, 2, corner[!turned]);
+            set_point(exact, 3, task->triangle[1][q]);
+            make_side(exact, exact->forms[k][3 * p + q]);
+        }
+    exact->is_made[k] = true;
+    return exact->forms[k];
+}
+
+/// out = the form at corners i and j of the piece.
+static void at_corners(enf_hidden_exact *exact, const mpz_t *values, const enf_piece *piece, int pair,
+                       mpz_t out) {
+    const int32_t *u = piece->corner[0][pair / 3], *v = piece->corner[1][pair % 3];
+    mpz_set_ui(out, 0);
+    for (int p = 0; p < 3; p++)
+        for (int q = 0; q < 3; q++) {
+            mpz_mul_si(exact->product, values[3 * p + q], (int64_t)u[p] * v[q]);
+            mpz_add(out, out, exact->product);
+        }
+}
+
+bool enf_hidden_exact_proves(enf_hidden_exact *exact, const enf_piece *piece, const double *weights) {
+    for (int pair = 0; pair < PAIRS; pair++) mpz_set_ui(exact->total[pair], 0);
+    double most = 0;
+    for (int32_t k = 0; k < exact->task->edge_count; k++) most = fmax(most, weights[k]);
+    for (int32_t k = 0; k < exact->task->edge_count; k++) {
+        uint64_t weight = (uint64_t)ldexp(weights[k] / most, 40); // what is less is rounding
+        if (!(most > 0) || weight < 64) continue;
+        mpz_t *values = form_of(exact, k);
+        for (int pair = 0; pair < PAIRS; pair++) mpz_addmul_ui(exact->total[pair], values[pair], weight);
+    }
+    for (int pair = 0; pair < PAIRS; pair++) {
+        at_corners(exact, (const mpz_t *)exact->total, piece, pair, exact->denominator);
+        if (mpz_sgn(exact->denominator) > 0) return false;
+    }
+    return most > 0;
+}
+
+// ---------------------------------------------------------------------------------------------- tableau
+
+/// Columns: the edges, then a slack for each row. Rows: the pairs of corners, then gains.
+typedef struct table {
+    mpz_t *entry;
+    int32_t width;
+    int32_t basis[PAIRS];
+} table;
+
+static bool make_table(enf_hidden_exact *exact, const enf_piece *piece, table *table) {
+    int32_t edges = exact->task->edge_count;
+    table->width = edges + PAIRS;
+    size_t wanted = (size_t)table->width * ROWS, capacity = exact->table_count;
+    if (!enf_array_reserve(exact->table, capacity, wanted)) return false;
+    for (; exact->table_count < wanted; exact->table_count++) mpz_init(exact->table[exact->table_count]);
+    table->entry = exact->table;
+    for (int r = 0; r < ROWS; r++) {
+        mpz_t *row = table->entry + (ptrdiff_t)r * table->width;
+        for (int32_t k = 0; k < edges; k++) {
+            if (r < PAIRS)
+                at_corners(exact, (const mpz_t *)form_of(exact, k), piece, r, row[k]);
+            else
+                mpz_set_ui(row[k], 1);
+        }
+        for (int s = 0; s < PAIRS; s++) mpz_set_ui(row[edges + s], r == s);
+        if (r < PAIRS) table->basis[r] = edges + r;
+    }
+    mpz_set_ui(exact->denominator, 1);
+    return true;
+}
+
+static void pivot(enf_hidden_exact *exact, table *table, int row, int32_t column) {
+    mpz_t *from = table->entry + (ptrdiff_t)row * table->width;
+    for (int r = 0; r < ROWS; r++) {
+        mpz_t *to = table->entry + (ptrdiff_t)r * table->width;
+        if (r == row) continue;
+        for (int32_t k = 0; k < table->width; k++) {
+            if (k == column) continue;
+            mpz_mul(to[k], to[k], from[column]);
+            mpz_submul(to[k], to[column], from[k]);
+            mpz_divexact(to[k], to[k], exact->denominator);
+        }
+        mpz_set_ui(to[column], 0);
+    }
+    mpz_set(exact->denominator, from[column]);
+    table->basis[row] = column;
+}
+
+/// 1: the sum grows without end; 0: it does not; -1: too many steps.
+static int run_table(enf_hidden_exact *exact, table *table) {
+    const mpz_t *gain = (const mpz_t *)(table->entry + (ptrdiff_t)PAIRS * table->width);
+    for (int step = 0; step < STEPS_MAX; step++) {
+        int32_t column = 0;
+        int leaving = -1;
+        while (column < table->width && mpz_sgn(gain[column]) <= 0) column++;
+        if (column == table->width) return 0;
+        for (int r = 0; r < PAIRS; r++) {
+            if (mpz_sgn(table->entry[(ptrdiff_t)r * table->width + column]) <= 0) continue;
+            if (leaving < 0 || table->basis[r] < table->basis[leaving]) leaving = r;
+        }
+        if (leaving < 0) return 1;
+        pivot(exact, table, leaving, column);
+    }
+    return -1;
+}
+
+/// The two points that the dual solution names: does the line through them pass all edges?
+static bool dual_line_passes(enf_hidden_exact *exact, const enf_piece *piece, const table *table) {
+    const mpz_t *gain = (const mpz_t *)(table->entry + (ptrdiff_t)PAIRS * table->width);
+    for (int s = 0; s < 2; s++)
+        for (int p = 0; p < 3; p++) mpz_set_ui(exact->share[s][p], 0);
+    for (int pair = 0; pair < PAIRS; pair++)
+        for (int p = 0; p < 3; p++) {
+            mpz_srcptr weight = gain[exact->task->edge_count + pair]; // <= 0
+            mpz_submul_ui(exact->share[0][p], weight, (unsigned long)piece->corner[0][pair / 3][p]);
+            mpz_submul_ui(exact->share[1][p], weight, (unsigned long)piece->corner[1][pair % 3][p]);
+        }
+    for (int32_t k = 0; k < exact->task->edge_count; k++) {
+        mpz_t *values = form_of(exact, k);
+        mpz_set_ui(exact->total[0], 0);
+        for (int pair = 0; pair < PAIRS; pair++) {
+            mpz_mul(exact->product, exact->share[0][pair / 3], exact->share[1][pair % 3]);
+            mpz_addmul(exact->total[0], exact->product, values[pair]);
+        }
+        if (mpz_sgn(exact->total[0]) <= 0) return false;
+    }
+    return true;
+}
+
+static void round_shares(enf_hidden_exact *exact, double share[2][3]) {
+    for (int s = 0; s < 2; s++) {
+        mpq_t part;
+        mpq_init(part);
+        mpz_add(exact->product, exact->share[s][0], exact->share[s][1]);
+        mpz_add(exact->product, exact->product, exact->share[s][2]);
+        for (int p = 0; p < 3; p++) {
+            mpq_set_num(part, exact->share[s][p]);
+            mpq_set_den(part, exact->product);
+            mpq_canonicalize(part);
+            share[s][p] = mpq_get_d(part);
+        }
+        mpq_clear(part);
+    }
+}
+
+int enf_hidden_exact_decide(enf_hidden_exact *exact, const enf_piece *piece, double share[2][3]) {
+    table table;
+    if (!make_table(exact, piece, &table)) return 0;
+    int answer = run_table(exact, &table);
+    if (answer != 0) return answer > 0;
+    if (!dual_line_passes(exact, piece, &table)) return 0;
+    round_shares(exact, share);
+    return -1;
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exact side of hidden_pieces.c: what doubles suggest about a piece of line space is proved or decided
+// here, with whole numbers.
+#ifndef ENF_VISIBILITY_HIDDEN_EXACT_H
+#define ENF_VISIBILITY_HIDDEN_EXACT_H
+
+#include "visibility/portal_graph.h"
+
+enum { ENF_PIECE_BITS = 20, ENF_PIECE_ONE = 1 << ENF_PIECE_BITS };
+
+/// A triangle within one of the first portal, corner[0], and one within one of the last, corner[1]: its
+/// corners' barycentric coordinates there, each adding up to ENF_PIECE_ONE.
+typedef struct enf_piece {
+    int32_t corner[2][3][3];
+    int8_t halved[2]; ///< how often
+} enf_piece;
+
+/// Two triangles, as corners of the graph, and the edges to be passed, as in hidden_proof.h.
+typedef struct enf_piece_task {
+    const enf_portal_graph *graph;
+    int32_t triangle[2][3];
+    const int32_t *edges, *corner_next;
+    int32_t edge_count;
+} enf_piece_task;
+
+typedef struct enf_hidden_exact enf_hidden_exact;
+
+/// Null without memory.
+enf_hidden_exact *enf_hidden_exact_make(const enf_portal_graph *graph);
+void enf_hidden_exact_free(enf_hidden_exact *exact);
+
+/// Everything is about this task from now on, which must stay. False without memory.
+bool enf_hidden_exact_begin(enf_hidden_exact *exact, const enf_piece_task *task);
+
+/// Do these weights of the edges prove that no line of the piece passes all of them?
+bool enf_hidden_exact_proves(enf_hidden_exact *exact, const enf_piece *piece, const double *weights);
+
+/// Decides whether there are such weights: 1 if so. If not, a line of the piece is tried: -1, it passes all
+/// edges; share[0] and [1] are, rounded, its points' barycentric coordinates in the two triangles. 0: it does
+/// not.
+int enf_hidden_exact_decide(enf_hidden_exact *exact, const enf_piece *piece, double share[2][3]);
+
+#endif
