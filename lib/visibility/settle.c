@@ -34,6 +34,7 @@ typedef struct settling {
     int32_t *first;         ///< per cell: sightings that were there before
     settle_result *results; ///< per cell
     bool *begun;            ///< per cell
+    bool *late;             ///< per cell: it was begun, but targets were left when time was over
     settler *settlers;
 } settling;
 
@@ -125,7 +126,7 @@ static enf_status run_cell(void *user, int32_t cell, int thread, bool *late, enf
     after = counts_of(settler->flow);
     add_counts(&after, &before, -1);
     settling->results[cell] = after;
-    *late = false;
+    *late = settling->late[cell] = false; // what is begun is brought to its end
     return status;
 }
 
@@ -133,6 +134,7 @@ static void encode_cell(void *user, int32_t cell, enf_bytes *bytes) {
     const settling *settling = user;
     int64_t counts[RESULT_COUNTS];
     memcpy(counts, &settling->results[cell], sizeof counts);
+    enf_put_number(bytes, settling->late[cell]);
     enf_put_counts(bytes, counts, RESULT_COUNTS);
     enf_put_sightings(bytes, settling->sightings, cell, settling->first[cell]);
 }
@@ -143,6 +145,7 @@ static bool decode_cell(void *user, int32_t cell, enf_reader *reader) {
     const enf_cell_sightings *of = &settling->sightings->cells[cell];
     uint64_t *targets = enf_bits_row(&settling->targets, cell);
     int64_t counts[RESULT_COUNTS];
+    settling->late[cell] = enf_take_number(reader, 1);
     enf_take_counts(reader, counts, RESULT_COUNTS);
     memcpy(&settling->results[cell], counts, sizeof counts);
     if (!enf_take_sightings(reader, settling->sightings, cell)) return false;
@@ -155,12 +158,12 @@ static bool decode_cell(void *user, int32_t cell, enf_reader *reader) {
 
 // ---------------------------------------------------------------------------------------------- all
 
-/// Cells that were too late still have their targets: all of them count as seen.
+/// Targets that cells had no time for count as seen.
 static bool add_late(settling *settling) {
     for (int32_t i = 0; i < settling->targets.row_count; i++) {
         const uint64_t *row = enf_bits_row(&settling->targets, i);
-        for (int32_t j = -1;
-             !settling->begun[i] && (j = enf_bit_next(row, settling->targets.row_words, j + 1)) >= 0;) {
+        if (settling->begun[i] && !settling->late[i]) continue; // what is left there is hidden
+        for (int32_t j = -1; (j = enf_bit_next(row, settling->targets.row_words, j + 1)) >= 0;) {
             const enf_sighting sighting = {j, 0};
             settling->settlement->pairs_budgeted++;
             if (!enf_sightings_add(settling->sightings, i, &sighting, NULL)) return false;
@@ -177,9 +180,11 @@ static bool make_settling(settling *settling, int threads) {
     settling->first = enf_array_zeroed(cells, sizeof *settling->first);
     settling->results = enf_array_zeroed(cells, sizeof *settling->results);
     settling->begun = enf_array_zeroed(cells, sizeof *settling->begun);
+    settling->late = enf_array_zeroed(cells, sizeof *settling->late);
     settling->settlers = enf_array_zeroed((size_t)threads, sizeof *settling->settlers);
     if (!enf_bits_new(&settling->targets, (int32_t)cells, (int32_t)cells) || !settling->work ||
-        !settling->cost || !settling->first || !settling->results || !settling->begun || !settling->settlers)
+        !settling->cost || !settling->first || !settling->results || !settling->begun || !settling->late ||
+        !settling->settlers)
         return false;
     for (int i = 0; i < threads; i++) {
         settler *settler = &settling->settlers[i];
@@ -203,6 +208,7 @@ static void free_settling(settling *settling, int threads) {
     free(settling->first);
     free(settling->results);
     free(settling->begun);
+    free(settling->late);
     enf_bits_free(&settling->targets);
 }
 
