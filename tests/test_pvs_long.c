@@ -272,11 +272,14 @@ static void the_path_and_the_threads_do_not_matter(void **state) {
 static void an_interrupted_run_keeps_its_checkpoint(void **state) {
     (void)state;
     double whole = run_undisturbed("maze.prt");
-    unlink("kept.ck");
-    unlink("kept.txt");
-    for (int tries = 0; !run_and_stop(KEPT, whole * 0.4, SIGINT); tries++) assert_true(tries < 20);
+    bool stopped = false;
+    for (int tries = 0; !stopped; tries++) { // too early or too late, once in a while
+        unlink("kept.ck");
+        unlink("kept.txt");
+        stopped = run_and_stop(KEPT, whole * 0.4, SIGINT) && file_exists("kept.ck");
+        assert_true(tries < 20);
+    }
     assert_false(file_exists("kept.txt"));
-    assert_true(file_exists("kept.ck"));
     expect(KEPT, 0, "kept.txt: ");
     assert_same_file("whole.txt", "kept.txt");
 }
