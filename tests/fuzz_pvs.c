@@ -35,7 +35,8 @@ static double take_number(bytes *bytes) {
 }
 
 static bool add_opening(enf_portal_graph *graph, bytes *bytes) {
-    int32_t cells = take(bytes), from = cells % CELLS, to = cells / CELLS % CELLS, count = 3 + take(bytes) % 3;
+    int32_t cells = take(bytes), from = cells % CELLS, to = cells / CELLS % CELLS,
+            count = 3 + take(bytes) % 3;
     double corners[5][3];
     for (int32_t i = 0; i < count; i++)
         for (int axis = 0; axis < 3; axis++) corners[i][axis] = take_number(bytes);
@@ -49,7 +50,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     enf_portal_graph graph = {.cell_count = CELLS};
     enf_error error = {0};
     bool good = true;
-    for (int i = 0; good && i < OPENINGS_MOST && bytes.at < bytes.end; i++) good = add_opening(&graph, &bytes);
+    for (int i = 0; good && i < OPENINGS_MOST && bytes.at < bytes.end; i++)
+        good = add_opening(&graph, &bytes);
     enf_visibility outer = {0}, inner = {0};
     good = good && !enf_portal_graph_finish(&graph, &error);
     for (int method = 0; good && method < ENF_METHOD_COUNT; method++) {

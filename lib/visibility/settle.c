@@ -121,12 +121,13 @@ static enf_status run_cell(void *user, int32_t cell, int thread, bool *late, enf
     const settling *settling = user;
     settler *settler = &settling->settlers[thread];
     settle_result before = counts_of(settler->flow), after;
-    enf_status status = enf_flow_settle(settler->flow, cell, enf_bits_row(&settling->targets, cell), error);
+    enf_status status =
+        enf_flow_settle(settler->flow, cell, enf_bits_row(&settling->targets, cell), late, error);
     if (!status && settler->failed) status = enf_fail_memory(error, "the sight lines");
     after = counts_of(settler->flow);
     add_counts(&after, &before, -1);
     settling->results[cell] = after;
-    *late = settling->late[cell] = false; // what is begun is brought to its end
+    settling->late[cell] = *late;
     return status;
 }
 
@@ -172,7 +173,8 @@ static bool add_late(settling *settling) {
     return true;
 }
 
-static bool make_settling(settling *settling, int threads) {
+static bool make_settling(settling *settling, const enf_workplace *place) {
+    int threads = place->crew.threads;
     const enf_settlement *settlement = settling->settlement;
     size_t cells = (size_t)settlement->shapes->graph->cell_count;
     settling->work = enf_array_zeroed(cells, sizeof *settling->work);
@@ -193,6 +195,7 @@ static bool make_settling(settling *settling, int threads) {
                                                          .beams = settlement->beams,
                                                          .pluecker = settlement->pluecker,
                                                          .exact = settlement->exact,
+                                                         .deadline = place->deadline,
                                                          .seen = note,
                                                          .user = settler});
         if (!settler->flow) return false;
@@ -245,9 +248,8 @@ static enf_status settle_all(settling *settling, enf_workplace *place, enf_error
 enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, enf_workplace *place,
                           enf_error *error) {
     settling settling = {.settlement = settlement, .sightings = sightings};
-    enf_status status = make_settling(&settling, place->crew.threads)
-                            ? settle_all(&settling, place, error)
-                            : enf_fail_memory(error, "the portal sequences");
+    enf_status status = make_settling(&settling, place) ? settle_all(&settling, place, error)
+                                                        : enf_fail_memory(error, "the portal sequences");
     free_settling(&settling, place->crew.threads);
     return status;
 }
