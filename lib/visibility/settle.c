@@ -129,6 +129,8 @@ static void add_stabs(enf_stab_counts *sum, const enf_stab_counts *counts) {
     sum->quadrics += counts->quadrics;
     sum->quadrics_hidden += counts->quadrics_hidden;
     sum->undecided += counts->undecided;
+    sum->lines_fine += counts->lines_fine;
+    sum->lines_long += counts->lines_long;
     sum->lines_missing += counts->lines_missing;
 }
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lines between doubles next to one that is not: both points may be taken anywhere along the line, and each
+// coordinate may be rounded up or down.
+#include "visibility/stab_fine.h"
+
+#include <math.h>
+
+enum { FREE = 4, WAYS = 1 << FREE };
+
+/// What coordinates can become: the nearest double first, then the one on the other side.
+static void find_choices(const enf_fine *fine, const enf_stabber *stabber, double choice[FREE][2]) {
+    mpf_t exact, rest;
+    mpf_init2(exact, fine->bits);
+    mpf_init2(rest, fine->bits);
+    for (int index = 0; index < FREE; index++) {
+        enf_fine_coordinate(fine, stabber, index / 2, (fine->axis + 1 + index % 2) % 3, exact);
+        const double inner = mpf_get_d(exact); // cut off
+        mpf_set_d(rest, inner);
+        mpf_sub(rest, exact, rest);
+        const double other = nextafter(inner, mpf_sgn(rest) < 0 ? -HUGE_VAL : HUGE_VAL);
+        const bool nearer = fabs(mpf_get_d(rest)) * 2 > fabs(other - inner);
+        choice[index][0] = nearer ? other : inner;
+        choice[index][1] = nearer ? inner : other;
+    }
+    mpf_clear(exact);
+    mpf_clear(rest);
+}
+
+static bool is_finite(const enf_line *line) {
+    bool finite = true;
+    for (int i = 0; i < 3; i++) finite = finite && isfinite(line->from[i]) && isfinite(line->to[i]);
+    return finite;
+}
+
+bool enf_fine_round(enf_fine *fine, const enf_stabber *stabber, enf_line *line) {
+    double choice[FREE][2];
+    find_choices(fine, stabber, choice);
+    line->from[fine->axis] = fine->plane[0];
+    line->to[fine->axis] = fine->plane[1];
+    for (int way = 0; way < WAYS; way++) {
+        for (int index = 0; index < FREE; index++) {
+            double *point = index < 2 ? line->from : line->to;
+            point[(fine->axis + 1 + index % 2) % 3] = choice[index][way >> index & 1];
+        }
+        if (is_finite(line) && enf_stabber_passes(stabber, line)) return true;
+    }
+    return false;
+}
