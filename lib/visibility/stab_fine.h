@@ -37,9 +37,8 @@ void enf_fine_coordinate(const enf_fine *fine, const enf_stabber *stabber, int e
 bool enf_fine_centre(enf_fine *fine, enf_stabber *stabber, bool *passes);
 
 // ---- stab_round.c
-/// A line between doubles next to it that passes all portals; false if none is found. Moves the points along
-/// the line.
-bool enf_fine_round(enf_fine *fine, const enf_stabber *stabber, enf_line *line);
+/// A line between doubles next to it that passes all portals; false if none is found.
+bool enf_fine_round(const enf_fine *line, const enf_stabber *stabber, enf_line *rounded);
 
 // ---- stab_long.c
 /// The line in decimals with so many digits: six of them, as a new string. Null without memory.

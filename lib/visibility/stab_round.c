@@ -32,7 +32,8 @@ static bool is_finite(const enf_line *line) {
     return finite;
 }
 
-bool enf_fine_round(enf_fine *fine, const enf_stabber *stabber, enf_line *line) {
+/// All ways to round the points where they are.
+static bool round_here(const enf_fine *fine, const enf_stabber *stabber, enf_line *line) {
     double choice[FREE][2];
     find_choices(fine, stabber, choice);
     line->from[fine->axis] = fine->plane[0];
@@ -45,4 +46,38 @@ bool enf_fine_round(enf_fine *fine, const enf_stabber *stabber, enf_line *line) 
         if (is_finite(line) && enf_stabber_passes(stabber, line)) return true;
     }
     return false;
+}
+
+/// The point of the line in this plane, as the point at one end.
+static void set_point(enf_fine *fine, const enf_fine *line, int end, double plane) {
+    fine->plane[end] = plane;
+    mpf_set_d(fine->sum, plane);
+    mpf_set_d(fine->term, line->plane[0]);
+    mpf_sub(fine->sum, fine->sum, fine->term);
+    mpf_set_d(fine->term, line->plane[1]);
+    mpf_set_d(fine->x[0], line->plane[0]);
+    mpf_sub(fine->term, fine->term, fine->x[0]);
+    mpf_div(fine->sum, fine->sum, fine->term); // the share of the way
+    for (int i = 0; i < 3; i++) {
+        mpf_sub(fine->term, line->at[1][i], line->at[0][i]);
+        mpf_mul(fine->term, fine->term, fine->sum);
+        mpf_add(fine->at[end][i], line->at[0][i], fine->term);
+    }
+}
+
+bool enf_fine_round(const enf_fine *line, const enf_stabber *stabber, enf_line *rounded) {
+    static const double share[] = {0, 1.0 / 8, 1.0 / 4, 3.0 / 8, -1.0 / 8, -1.0 / 4, -1.0 / 2, -1};
+    enum { SHARES = sizeof share / sizeof *share };
+    const double way = line->plane[1] - line->plane[0];
+    enf_fine fine;
+    bool passes = false;
+    enf_fine_init(&fine, line->bits);
+    fine.axis = line->axis;
+    for (int k = 0; !passes && isfinite(way) && k < SHARES * SHARES; k++) {
+        set_point(&fine, line, 0, line->plane[0] + share[k / SHARES] * way);
+        set_point(&fine, line, 1, line->plane[1] - share[k % SHARES] * way);
+        passes = isfinite(fine.plane[0]) && isfinite(fine.plane[1]) && round_here(&fine, stabber, rounded);
+    }
+    enf_fine_clear(&fine);
+    return passes;
 }
