@@ -88,10 +88,12 @@ static int compare_work(const void *a, const void *b, void *user) {
 
 // ---------------------------------------------------------------------------------------------- jobs
 
-static void note(void *user, int32_t from, int32_t to, const enf_line *line, int32_t portals) {
+static void note(void *user, int32_t from, int32_t to, const enf_stab *stab, int32_t portals) {
     settler *settler = user;
     const enf_sighting sighting = {to, portals};
-    if (!enf_sightings_add(settler->sightings, from, &sighting, line)) settler->failed = true;
+    const enf_line *line = stab->has_line ? &stab->line : NULL;
+    if (!enf_sightings_add_long(settler->sightings, from, &sighting, line, stab->long_line))
+        settler->failed = true;
 }
 
 static void settle_job(void *user, int32_t index, int thread) {
