@@ -44,7 +44,7 @@ static int enter(void **state) {
     for (int32_t i = 0; i < 6; ++i)
         for (int32_t j = 0; j < 6; ++j) {
             see(&f->pvs, i, j, true);
-            if (i < j) f->list.items[f->list.count++] = (enf_witness){{i, j}, {0, 1, 1}, {6, 1.5, 1}};
+            if (i < j) f->list.items[f->list.count++] = (enf_witness){{i, j}, {0, 1, 1}, {6, 1.5, 1}, NULL};
         }
     *state = f;
     return 0;

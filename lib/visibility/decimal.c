@@ -5,25 +5,25 @@
 #include <stdlib.h>
 
 /// Digits and a point into a whole number. Returns how many digits there are, leading zeros not counted, or
-/// -1 if there are none at all; *exponent is lowered by one for each digit behind the point.
+/// -1 if there are none at all or too many; *exponent is lowered by one for each digit behind the point.
 static int read_digits(mpz_t out, const char **text, long *exponent) {
     const char *at = *text;
-    int digits = 0;
-    bool any = false, behind = false;
+    int digits = 0, all = 0;
+    bool behind = false;
     mpz_set_ui(out, 0);
     for (; isdigit((unsigned char)*at) || (*at == '.' && !behind); at++) {
         if (*at == '.') {
             behind = true;
             continue;
         }
-        any = true;
+        if (++all > ENF_DECIMAL_DIGITS) return -1;
         *exponent -= behind;
         digits += digits > 0 || *at != '0';
         mpz_mul_ui(out, out, 10);
         mpz_add_ui(out, out, (unsigned long)(*at - '0'));
     }
     *text = at;
-    return any ? digits : -1;
+    return all ? digits : -1;
 }
 
 /// Moves behind an exponent, if there is one, and adds it; false if it is too large.

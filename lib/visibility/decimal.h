@@ -6,8 +6,8 @@
 #include <gmp.h>
 #include <stdbool.h>
 
-/// Exponents of ten beyond these limits are refused.
-enum { ENF_DECIMAL_EXPONENT = 20000 };
+/// Numbers with more digits, or exponents of ten beyond these limits, are refused.
+enum { ENF_DECIMAL_DIGITS = 20000, ENF_DECIMAL_EXPONENT = 20000 };
 
 /// out = the number that *text begins with, after blanks: a sign or none, digits with or without a point, an
 /// exponent or none. Moves *text behind it and sets *digits to how many digits it has, leading zeros not
