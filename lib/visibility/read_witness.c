@@ -64,8 +64,9 @@ static enf_status keep_decimals(enf_source *source, const char *at, enf_witness 
     while (*rest && enf_decimal_read(number, &rest, &digits)) continue;
     mpq_clear(number);
     if (*rest == '\0') return ENF_OK;
-    return enf_source_fail(source, error, "numbers of more than 17 digits, and those beside them, should be "
-                                          "decimals; make the file again");
+    return enf_source_fail(source, error,
+                           "numbers of more than 17 digits, and those beside them, should be "
+                           "decimals; make the file again");
 }
 
 static bool ascends(const enf_witness *before, const enf_witness *witness) {

@@ -6,6 +6,8 @@
 
 #include "base/array.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 enum { FREE = 4, STEPS = 60, HALVINGS = 40, DOUBLINGS = 400 };
@@ -17,6 +19,7 @@ typedef struct centring {
     mpf_t *sides, *tried; ///< edge_count
     mpf_t old[FREE], step[FREE], matrix[FREE][FREE + 1];
     mpf_t gradient[FREE], gain, best, length;
+    mpf_t most; ///< coordinates beyond this do not grow
 } centring;
 
 /// One of the four: two of each point, those that are not on the planes' axis.
@@ -83,7 +86,7 @@ static void solve(centring *c) {
     }
     for (int r = 0; r < FREE; r++) {
         mpf_set_ui(c->step[r], 0);
-        if (used[r]) mpf_div(c->step[r], c->matrix[r][FREE], c->matrix[r][r]);
+        if (used[r] && mpf_sgn(c->matrix[r][r]) > 0) mpf_div(c->step[r], c->matrix[r][FREE], c->matrix[r][r]);
     }
 }
 
@@ -98,14 +101,24 @@ static bool set_sides(centring *c, mpf_t *sides) {
     return true;
 }
 
+/// Has the variable grown, beyond what the sequence can need?
+static bool is_far(centring *c, int index) {
+    mpf_abs(c->fine->term, *variable(c, index));
+    if (mpf_cmp(c->fine->term, c->most) <= 0) return false;
+    mpf_abs(c->fine->sum, c->old[index]);
+    return mpf_cmp(c->fine->term, c->fine->sum) > 0;
+}
+
 /// Goes `length` times the step from the old place. Does the line pass, the product grown by more than
 /// `best`? Then that is what `gain` says.
 static bool try_length(centring *c) {
+    bool far = false;
     for (int i = 0; i < FREE; i++) {
         mpf_mul(c->fine->term, c->length, c->step[i]);
         mpf_add(*variable(c, i), c->old[i], c->fine->term);
+        far = far || is_far(c, i);
     }
-    if (!set_sides(c, c->tried)) return false;
+    if (far || !set_sides(c, c->tried)) return false;
     mpf_set_ui(c->gain, 1);
     for (int32_t k = 0; k < c->stabber->edge_count; k++) {
         mpf_mul(c->gain, c->gain, c->tried[k]);
@@ -155,8 +168,8 @@ static void move(centring *c) {
 
 static void each_number(centring *c, void (*act)(mpf_ptr, mp_bitcnt_t)) {
     const mp_bitcnt_t bits = c->fine->bits;
-    mpf_ptr const single[3] = {c->gain, c->best, c->length};
-    for (int i = 0; i < 3; i++) act(single[i], bits);
+    mpf_ptr const single[4] = {c->gain, c->best, c->length, c->most};
+    for (int i = 0; i < 4; i++) act(single[i], bits);
     for (int i = 0; i < FREE; i++) {
         act(c->old[i], bits);
         act(c->step[i], bits);
@@ -183,6 +196,8 @@ bool enf_fine_centre(enf_fine *fine, enf_stabber *stabber, bool *passes) {
     const bool done = c.sides && c.tried;
     if (done) {
         each_number(&c, mpf_init2);
+        mpf_set_d(c.most, 4 * fmin(fine->reach, DBL_MAX / 4));
+        enf_fine_shift(c.most, -stabber->unit);
         *passes = set_sides(&c, c.sides);
         if (*passes) move(&c);
         each_number(&c, clear);

@@ -117,6 +117,10 @@ static int longest_axis(enf_fine *fine) {
     return axis;
 }
 
+static double clamp(double value) {
+    return fmax(fmin(value, DBL_MAX), -DBL_MAX);
+}
+
 /// Through the middles of the first and the last portal, or so far apart as the sequence is large.
 static void choose_planes(enf_fine *fine, const enf_stabber *stabber) {
     const enf_pluecker_opening *openings = stabber->pluecker->openings;
@@ -130,16 +134,16 @@ static void choose_planes(enf_fine *fine, const enf_stabber *stabber) {
         }
         reach = fmax(reach, high - low);
     }
-    const double first = openings[stabber->sequence[0] >> 1].middle[fine->axis];
+    fine->reach = clamp(reach);
+    const double first = clamp(openings[stabber->sequence[0] >> 1].middle[fine->axis]);
     double last = openings[stabber->sequence[stabber->count - 1] >> 1].middle[fine->axis];
     if (!((last - first) * way > reach / 8)) last = first + way * reach;
     if (last == first) last = nextafter(first, way * HUGE_VAL);
     fine->plane[0] = first;
-    fine->plane[1] = fmax(fmin(last, DBL_MAX), -DBL_MAX);
+    fine->plane[1] = clamp(last);
 }
 
-/// times 2^shift
-static void shift_by(mpf_t value, int shift) {
+void enf_fine_shift(mpf_t value, int shift) {
     if (shift >= 0)
         mpf_mul_2exp(value, value, (mp_bitcnt_t)shift);
     else
@@ -151,7 +155,7 @@ void enf_fine_coordinate(const enf_fine *fine, const enf_stabber *stabber, int e
     mpf_init2(origin, fine->bits);
     mpf_set_d(origin, stabber->origin[axis]);
     mpf_set(out, fine->at[end][axis]);
-    shift_by(out, stabber->unit);
+    enf_fine_shift(out, stabber->unit);
     mpf_add(out, out, origin);
     if (axis == fine->axis) mpf_set_d(out, fine->plane[end]);
     mpf_clear(origin);
@@ -170,7 +174,7 @@ static void set_point(enf_fine *fine, const enf_stabber *stabber, int end) {
     mpf_set_d(way, fine->plane[end]);
     mpf_set_d(fine->term, stabber->origin[fine->axis]);
     mpf_sub(way, way, fine->term);
-    shift_by(way, -stabber->unit);
+    enf_fine_shift(way, -stabber->unit);
     mpf_set(fine->term, way);
     mpf_sub(way, way, at[fine->axis]);
     mpf_div(way, way, x[fine->axis]);

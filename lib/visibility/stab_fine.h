@@ -12,6 +12,7 @@ typedef struct enf_fine {
     mp_bitcnt_t bits;
     int axis;        ///< the points lie in two planes across this axis,
     double plane[2]; ///< here, not seen from the origin; the line runs from the first to the second
+    double reach;    ///< of the sequence: its longest side along an axis
     enf_fine_point at[2];
     mpf_t x[ENF_PLUECKER], term, sum;
 } enf_fine;
@@ -28,6 +29,8 @@ void enf_fine_set_x(enf_fine *fine);
 /// Where enf_stabber_quadric found that the cone meets the quadric, in two planes next to the first and the
 /// last portal.
 void enf_fine_start(enf_fine *fine, enf_stabber *stabber);
+/// value *= 2^shift
+void enf_fine_shift(mpf_t value, int shift);
 /// out = the coordinate in the world
 void enf_fine_coordinate(const enf_fine *fine, const enf_stabber *stabber, int end, int axis, mpf_t out);
 

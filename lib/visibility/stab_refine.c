@@ -41,7 +41,8 @@ static bool attempt(enf_stabber *stabber, enf_fine *fine, enf_stab *stab) {
 
 enf_status enf_stabber_refine(enf_stabber *stabber, enf_stab *stab, enf_error *error) {
     bool done = true;
-    for (mp_bitcnt_t bits = BITS; done && bits <= BITS_MOST && !stab->has_line && !stab->long_line; bits *= 2) {
+    for (mp_bitcnt_t bits = BITS; done && bits <= BITS_MOST && !stab->has_line && !stab->long_line;
+         bits *= 2) {
         enf_fine fine;
         enf_fine_init(&fine, bits);
         done = attempt(stabber, &fine, stab);

@@ -15,6 +15,8 @@ static void find_choices(const enf_fine *fine, const enf_stabber *stabber, doubl
     for (int index = 0; index < FREE; index++) {
         enf_fine_coordinate(fine, stabber, index / 2, (fine->axis + 1 + index % 2) % 3, exact);
         const double inner = mpf_get_d(exact); // cut off
+        choice[index][0] = choice[index][1] = inner;
+        if (!isfinite(inner)) continue;
         mpf_set_d(rest, inner);
         mpf_sub(rest, exact, rest);
         const double other = nextafter(inner, mpf_sgn(rest) < 0 ? -HUGE_VAL : HUGE_VAL);
@@ -68,15 +70,18 @@ static void set_point(enf_fine *fine, const enf_fine *line, int end, double plan
 bool enf_fine_round(const enf_fine *line, const enf_stabber *stabber, enf_line *rounded) {
     static const double share[] = {0, 1.0 / 8, 1.0 / 4, 3.0 / 8, -1.0 / 8, -1.0 / 4, -1.0 / 2, -1};
     enum { SHARES = sizeof share / sizeof *share };
-    const double way = line->plane[1] - line->plane[0];
+    const double way = line->plane[1] - line->plane[0]; // all may be infinite or 0 where doubles end
     enf_fine fine;
     bool passes = false;
     enf_fine_init(&fine, line->bits);
     fine.axis = line->axis;
-    for (int k = 0; !passes && isfinite(way) && k < SHARES * SHARES; k++) {
-        set_point(&fine, line, 0, line->plane[0] + share[k / SHARES] * way);
-        set_point(&fine, line, 1, line->plane[1] - share[k % SHARES] * way);
-        passes = isfinite(fine.plane[0]) && isfinite(fine.plane[1]) && round_here(&fine, stabber, rounded);
+    for (int k = 0; !passes && way != 0 && k < SHARES * SHARES; k++) {
+        const double from = line->plane[0] + share[k / SHARES] * way,
+                     to = line->plane[1] - share[k % SHARES] * way;
+        if (!isfinite(from) || !isfinite(to)) continue;
+        set_point(&fine, line, 0, from);
+        set_point(&fine, line, 1, to);
+        passes = round_here(&fine, stabber, rounded);
     }
     enf_fine_clear(&fine);
     return passes;

@@ -161,8 +161,8 @@ static enf_status settle(ladder *ladder, enf_error *error) {
                                  .exact = ladder->options->method == ENF_METHOD_EXACT,
                                  .deadline = ladder->deadline};
     enf_status status = enf_settle_run(&settlement, &ladder->sightings, &crew, error);
-    if (!status && !(enf_sightings_symmetrise(&ladder->sightings) &&
-                     add_neighbours(&ladder->sightings, ladder->graph)))
+    if (!status &&
+        !(enf_sightings_symmetrise(&ladder->sightings) && add_neighbours(&ladder->sightings, ladder->graph)))
         status = enf_fail_memory(error, "the sight lines");
     if (status) return status;
     memset(pvs->rows, 0, (size_t)pvs->cell_count * pvs->row_words * sizeof *pvs->rows);

@@ -38,8 +38,7 @@ enf_status enf_witnesses_print(const enf_visibility *visibility, FILE *out, enf_
         entries[i] = (entry){{cells[0], cells[1]}, (int64_t)i};
     }
     qsort(entries, count, sizeof *entries, compare);
-    for (size_t i = 0; i < count && !ferror(out); i++)
-        print_line(visibility, &entries[i], out);
+    for (size_t i = 0; i < count && !ferror(out); i++) print_line(visibility, &entries[i], out);
     free(entries);
     return ENF_OK;
 }
