@@ -17,13 +17,15 @@ static const cli_command benches[] = {
     {"growth", "offices and caverns up to a million polygons: time, memory, exponents", cli_bench_growth},
     {"soups", "soups that others choke on: time, memory, cells", cli_bench_soups},
     {"stability", "families of random soups: check, oracles, times", cli_bench_stability},
+    {"visibility", "DIR: the rungs of visibility on portal files: run time against error",
+     cli_bench_visibility},
 };
 
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };
 
 static void print_usage(FILE *file) {
     fputs("usage: enfilade bench NAME ...\n\n", file);
-    for (int i = 0; i < BENCH_COUNT; i++) fprintf(file, "  %-9s %s\n", benches[i].name, benches[i].summary);
+    for (int i = 0; i < BENCH_COUNT; i++) fprintf(file, "  %-10s %s\n", benches[i].name, benches[i].summary);
 }
 
 int cli_bench(int argc, char **argv) {

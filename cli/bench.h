@@ -27,5 +27,7 @@ int cli_bench_growth(int argc, char **argv);
 int cli_bench_soups(int argc, char **argv);
 /// Families of random soups, each run in a process of its own; a row per family, and one per failure.
 int cli_bench_stability(int argc, char **argv);
+/// The rungs of visibility on every portal file in a folder: run time against error.
+int cli_bench_visibility(int argc, char **argv);
 
 #endif

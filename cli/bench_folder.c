@@ -15,27 +15,25 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static const char *const endings[] = {".obj", ".obj.gz", ".ply", ".ply.gz",
-                                      ".off", ".off.gz", ".stl", ".stl.gz"};
+static const char *const polygon_endings[] = {".obj",    ".obj.gz", ".ply",    ".ply.gz", ".off",
+                                              ".off.gz", ".stl",    ".stl.gz", NULL};
 
 /// Length of the name without its ending, or 0 if it is no level's.
-static size_t stem_length(const char *name) {
+static size_t stem_length(const cli_folder *folder, const char *name) {
+    const char *const *endings = folder->endings ? folder->endings : polygon_endings;
     size_t length = strlen(name);
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        size_t tail = strlen(endings[i]);
-        if (length > tail && strcmp(name + length - tail, endings[i]) == 0) return length - tail;
+    for (; *endings; endings++) {
+        size_t tail = strlen(*endings);
+        if (length > tail && strcmp(name + length - tail, *endings) == 0) return length - tail;
     }
     return 0;
 }
 
-static int is_level(const struct dirent *entry) {
-    return stem_length(entry->d_name) > 0;
-}
-
-static bool matches(const char *name, const char *pattern) {
-    if (!pattern) return true;
-    char *stem = strndup(name, stem_length(name));
-    bool match = stem && fnmatch(pattern, stem, 0) == 0;
+static bool is_asked_for(const cli_folder *folder, const char *name) {
+    size_t length = stem_length(folder, name);
+    if (length == 0 || !folder->pattern) return length > 0;
+    char *stem = strndup(name, length);
+    bool match = stem && fnmatch(folder->pattern, stem, 0) == 0;
     free(stem);
     return match;
 }
@@ -94,10 +92,10 @@ static int visit_level(const cli_folder *folder, const char *name, void *row) {
 
 int cli_folder_visit(const cli_folder *folder) {
     struct dirent **entries = NULL;
-    int count = scandir(folder->path, &entries, is_level, alphasort), worst = ENF_OK, visited = 0;
+    int count = scandir(folder->path, &entries, NULL, alphasort), worst = ENF_OK, visited = 0;
     void *row = enf_array_zeroed(folder->row_size, 1);
     for (int i = 0; i < count; i++) {
-        if (row && matches(entries[i]->d_name, folder->pattern)) {
+        if (row && is_asked_for(folder, entries[i]->d_name)) {
             if (visited++ == 0 && folder->print_head) folder->print_head(folder->user);
             int status = visit_level(folder, entries[i]->d_name, row);
             if (status > worst) worst = status;
@@ -107,11 +105,11 @@ int cli_folder_visit(const cli_folder *folder) {
     free(entries);
     free(row);
     if (visited > 0) return worst;
-    fprintf(stderr, "%s: %s; name a folder with .obj, .ply, .off or .stl files, gzipped or not\n",
-            folder->path,
+    fprintf(stderr, "%s: %s; name a folder with %s files, gzipped or not\n", folder->path,
             count < 0         ? "can't be read"
             : folder->pattern ? "holds no levels that match"
-                              : "holds no levels");
+                              : "holds no levels",
+            folder->endings ? *folder->endings : ".obj, .ply, .off or .stl");
     return count < 0 ? ENF_NO_RESOURCES : ENF_BAD_INPUT;
 }
 

@@ -8,7 +8,8 @@
 
 typedef struct cli_folder {
     const char *path;
-    const char *pattern; ///< glob for the levels' names without their endings; null: all
+    const char *pattern;        ///< glob for the levels' names without their endings; null: all
+    const char *const *endings; ///< of levels' names, ended by a null; null: those of polygon files
     void *user;
     /// In the child: works on the level and fills `row`. Returns the exit status; says itself what went
     /// wrong.

@@ -4,6 +4,7 @@
 #include "visibility/facing.h"
 
 #include "base/array.h"
+#include "visibility/beyond.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@ typedef struct flooder {
 
 typedef struct search {
     const enf_shapes *shapes;
+    enf_whole_corners whole;
     const enf_bits *before; ///< what an earlier flood found, or null
     enf_bits *found;
     int32_t *follow; ///< per portal, an offset into follows
@@ -23,29 +25,46 @@ typedef struct search {
     flooder *flooders;
 } search;
 
-/// Is some of the opening higher than the portal's plane (side 1), or lower (side -1)?
-static bool has_corner(const enf_shapes *shapes, int32_t portal, int32_t opening, double side) {
-    const enf_shape *shape = &shapes->shapes[opening];
-    double middle = side * enf_shape_height(shapes, portal, shape->centre);
-    if (middle > shapes->tolerance) return true;
-    if (middle + shape->radius <= shapes->tolerance) return false;
+typedef enum answer { NO, UNSURE, YES } answer;
+
+/// Is some of the opening higher than the portal's plane (side 1), or lower (side -1)? For a plane along the
+/// axes, which most are in buildings, this is sure.
+static answer has_corner(const enf_shapes *shapes, int32_t portal, int32_t opening, double side) {
+    const enf_shape *shape = &shapes->shapes[opening], *plane = &shapes->shapes[portal >> 1];
+    int axis = plane->flat_axis;
+    if (axis >= 0) {
+        bool up = ((portal & 1) != 0) == (plane->normal[axis] * side < 0);
+        return (up ? shape->high[axis] > plane->low[axis] : shape->low[axis] < plane->low[axis]) ? YES : NO;
+    }
+    double middle = side * enf_shape_height(shapes, portal, shape->centre), highest = middle;
+    if (middle > shapes->tolerance) return YES;
+    if (middle + shape->radius < -shapes->tolerance) return NO;
     const double(*corners)[3] = enf_shape_outline(shapes, opening);
-    for (int32_t i = 0; i < shape->count; i++)
-        if (side * enf_shape_height(shapes, portal, corners[i]) > shapes->tolerance) return true;
-    return false;
+    for (int32_t i = 0; i < shape->count; i++) {
+        double height = side * enf_shape_height(shapes, portal, corners[i]);
+        if (height > highest) highest = height;
+    }
+    return highest > shapes->tolerance ? YES : highest < -shapes->tolerance ? NO : UNSURE;
+}
+
+/// The same, sure.
+static bool reaches(const search *search, int32_t portal, int32_t opening, int side) {
+    answer quick = has_corner(search->shapes, portal, opening, side);
+    if (quick != UNSURE) return quick == YES;
+    return enf_opening_is_beyond(&search->whole, portal >> 1, opening, portal & 1 ? -side : side);
 }
 
 /// Could a line pass the one portal and then the other?
-static bool is_facing(const enf_shapes *shapes, int32_t portal, int32_t other) {
-    return portal >> 1 != other >> 1 && has_corner(shapes, portal, other >> 1, 1) &&
-           has_corner(shapes, other, portal >> 1, -1);
+static bool is_facing(const search *search, int32_t portal, int32_t other) {
+    return portal >> 1 != other >> 1 && reaches(search, portal, other >> 1, 1) &&
+           reaches(search, other, portal >> 1, -1);
 }
 
 /// Could a line through the source pass this portal? Each is looked at once: what fails is remembered, too.
 static bool can_pass(const search *search, const flooder *flooder, int32_t source, int32_t portal) {
     if (search->before) return enf_bit_get(enf_bits_row(search->before, source), portal);
     if (enf_bit_get(flooder->failed, portal)) return false;
-    if (is_facing(search->shapes, source, portal)) return true;
+    if (is_facing(search, source, portal)) return true;
     enf_bit_set(flooder->failed, portal);
     return false;
 }
@@ -92,8 +111,7 @@ static bool make_follows(search *search) {
     for (int32_t p = 0; p < portals; p++) {
         const int32_t *of = &graph->cell_portal[enf_portal_to(graph, p)];
         for (int32_t k = of[0]; k < of[1]; k++)
-            search->follows[search->follow[p] + k - of[0]] =
-                is_facing(search->shapes, p, graph->cell_portals[k]);
+            search->follows[search->follow[p] + k - of[0]] = is_facing(search, p, graph->cell_portals[k]);
     }
     return true;
 }
@@ -122,7 +140,8 @@ static bool make_search(search *search, int threads) {
         flooder->failed = enf_array_new(search->found->row_words, sizeof *flooder->failed);
         if (!flooder->queue || !flooder->failed) return false;
     }
-    return search->flooders && make_follows(search);
+    return search->flooders && enf_whole_corners_make(&search->whole, search->shapes->graph) &&
+           make_follows(search);
 }
 
 static void free_search(search *search, int threads) {
@@ -133,6 +152,7 @@ static void free_search(search *search, int threads) {
     free(search->flooders);
     free(search->follow);
     free(search->follows);
+    enf_whole_corners_free(&search->whole);
 }
 
 enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, const enf_crew *crew,

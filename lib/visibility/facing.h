@@ -9,7 +9,8 @@
 
 /// Bit q of row p: portal q can be reached from portal p through portals that are all in front of p and have
 /// p behind them, each in front of the one before it. Symmetric: q is in p's row exactly if the twin of p is
-/// in the row of the twin of q. *facing is made; free it in any case.
+/// in the row of the twin of q. No pair that a line passes, by however little, is left out. *facing is made;
+/// free it in any case.
 enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, const enf_crew *crew,
                            enf_error *error);
 

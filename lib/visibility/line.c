@@ -79,6 +79,15 @@ static int side_exactly(const enf_line *line, const double a[3], const double b[
     return sign;
 }
 
+int enf_line_side(const enf_line *line, const double a[3], const double b[3]) {
+    double along[3], to_a[3], to_b[3];
+    subtract(line->to, line->from, along);
+    subtract(a, line->from, to_a);
+    subtract(b, line->from, to_b);
+    int side = side_quickly(along, to_a, to_b);
+    return side ? side : side_exactly(line, a, b);
+}
+
 static bool passes_exactly(const enf_line *line, const enf_portal_graph *graph, int32_t portal) {
     const int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
     int edges = 0;

@@ -18,4 +18,8 @@ bool enf_line_passes(const enf_line *line, const enf_portal_graph *graph, int32_
 /// What doubles can tell of the same: +1 surely passes, -1 surely does not, 0 unsure.
 int enf_line_passes_quickly(const enf_line *line, const enf_portal_graph *graph, int32_t portal);
 
+/// Sign of det(line, a - from, b - from): exact for any finite doubles. Positive if b is in front of the
+/// plane through from, to and a, whose front sees them turn counter-clockwise.
+int enf_line_side(const enf_line *line, const double a[3], const double b[3]);
+
 #endif

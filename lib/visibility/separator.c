@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "visibility/separator.h"
 
+#include "visibility/contact.h"
+
 #include <math.h>
 
 typedef struct tangent {
@@ -49,23 +51,58 @@ static double lowest(const enf_window *window, const double normal[3]) {
     return lowest;
 }
 
-/// Through the edges of `one`, which turns counter-clockwise against the sight if `turns`. Of the two windows
-/// `one` is behind the planes and `other` in front; if sight goes from other to one, they are turned round.
-static void add_planes(enf_separators *separators, const enf_shapes *shapes, const enf_window *one,
-                       const enf_window *other, bool turns, bool forward) {
+/// Corners this near to a plane may touch it. Points of a window next to the plane, but for its tolerance,
+/// are not further from those corners than 2^-14 of the window's size, or so.
+static const double band_tolerances = 0x1p14;
+
+/// Two windows and the way between them.
+typedef struct passage {
+    const enf_shapes *shapes;
+    const enf_window *one, *other; ///< planes go through the edges of one
+    bool turns;                    ///< one turns counter-clockwise against the sight
+    bool forward;                  ///< sight goes from one to other
+    double gap;                    ///< the windows are at least this far apart; negative: no telling
+} passage;
+
+/// What a plane must leave over. A point of a window may be off by the tolerance, so a line may come through
+/// the plane the wrong way, by that much on the way between the windows where both touch the plane, and go on
+/// so to the end of the world: where windows touch each other at the plane, the plane says nothing.
+static double find_slack(const passage *passage, const tangent *tangent) {
+    const enf_shapes *shapes = passage->shapes;
+    double distance = passage->gap;
+    if (distance < shapes->extent * 0x1p-12) {
+        distance = enf_contact_distance(passage->one, passage->other, tangent->normal,
+                                        band_tolerances * shapes->tolerance);
+        distance -= shapes->extent * 0x1p-30;
+    }
+    if (!(distance > 0)) return HUGE_VAL;
+    return shapes->tolerance * (tangent->tilt + 4 * shapes->extent / distance);
+}
+
+static void add_planes(enf_separators *separators, const passage *passage) {
+    const enf_window *one = passage->one;
     for (int32_t i = 0; i < one->count && separators->count < ENF_SEPARATORS_MOST; i++) {
         int32_t next = i + 1 < one->count ? i + 1 : 0;
-        const double *a = one->corners[turns ? i : next], *b = one->corners[turns ? next : i];
+        const double *a = one->corners[passage->turns ? i : next],
+                     *b = one->corners[passage->turns ? next : i];
         tangent tangent;
-        if (!find_tangent(a, b, other, shapes->extent, &tangent)) continue;
-        double behind = highest(one, tangent.normal), front = lowest(other, tangent.normal);
-        double slack = shapes->tolerance * tangent.tilt;
-        if (behind > front + shapes->tolerance || slack > shapes->extent) continue;
+        if (!find_tangent(a, b, passage->other, passage->shapes->extent, &tangent)) continue;
+        double behind = highest(one, tangent.normal), front = lowest(passage->other, tangent.normal);
+        if (behind > front + passage->shapes->tolerance) continue;
+        double slack = find_slack(passage, &tangent);
+        if (slack > passage->shapes->extent) continue;
         enf_cut *cut = &separators->cuts[separators->count++];
         for (int axis = 0; axis < 3; axis++)
-            cut->normal[axis] = forward ? tangent.normal[axis] : -tangent.normal[axis];
-        cut->least = (forward ? front : -behind) - slack;
+            cut->normal[axis] = passage->forward ? tangent.normal[axis] : -tangent.normal[axis];
+        cut->least = (passage->forward ? front : -behind) - slack;
     }
+}
+
+static double find_gap(const enf_shapes *shapes, int32_t portal, int32_t other) {
+    const enf_shape *one = &shapes->shapes[portal >> 1], *two = &shapes->shapes[other >> 1];
+    double way[3];
+    for (int axis = 0; axis < 3; axis++) way[axis] = one->centre[axis] - two->centre[axis];
+    return sqrt(enf_dot(way, way)) - one->radius - two->radius;
 }
 
 void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, int32_t from_portal) {
@@ -76,8 +113,18 @@ void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, 
 void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
                          int32_t from_portal, const enf_window *to, int32_t to_portal) {
     enf_separators_begin(separators, shapes, from_portal);
-    add_planes(separators, shapes, from, to, !(from_portal & 1), true);
-    add_planes(separators, shapes, to, from, to_portal & 1, false);
+    passage passage = {.shapes = shapes,
+                       .one = from,
+                       .other = to,
+                       .turns = !(from_portal & 1),
+                       .forward = true,
+                       .gap = find_gap(shapes, from_portal, to_portal)};
+    add_planes(separators, &passage);
+    passage.one = to;
+    passage.other = from;
+    passage.turns = to_portal & 1;
+    passage.forward = false;
+    add_planes(separators, &passage);
 }
 
 /// False if some cut leaves nothing of the sphere. *needed receives the cuts that may take something.

@@ -136,7 +136,7 @@ static void add_stabs(enf_stab_counts *sum, const enf_stab_counts *counts) {
     sum->lines_missing += counts->lines_missing;
 }
 
-static bool make_settling(settling *settling, const enf_pluecker *pluecker, int threads) {
+static bool make_settling(settling *settling, int threads) {
     const enf_settlement *settlement = settling->settlement;
     int32_t cells = settlement->shapes->graph->cell_count;
     settling->work = enf_array_zeroed((size_t)cells, sizeof *settling->work);
@@ -151,7 +151,7 @@ static bool make_settling(settling *settling, const enf_pluecker *pluecker, int 
         settler->sightings = settling->sightings;
         settler->flow = enf_flow_new(&(enf_flow_options){.shapes = settlement->shapes,
                                                          .beams = settlement->beams,
-                                                         .pluecker = pluecker,
+                                                         .pluecker = settlement->pluecker,
                                                          .exact = settlement->exact,
                                                          .seen = note,
                                                          .user = settler});
@@ -184,11 +184,8 @@ static bool end_settling(settling *settling, int threads, enf_error *error) {
 enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, const enf_crew *crew,
                           enf_error *error) {
     settling settling = {.settlement = settlement, .sightings = sightings};
-    enf_pluecker pluecker = {0};
     int32_t cells = settlement->shapes->graph->cell_count;
-    bool good = enf_pluecker_make(&pluecker, settlement->shapes->graph) &&
-                make_settling(&settling, &pluecker, crew->threads),
-         done = true;
+    bool good = make_settling(&settling, crew->threads), done = true;
     if (good) {
         count_work(&settling);
         find_targets(&settling);
@@ -199,7 +196,6 @@ enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, 
     }
     enf_error failure = {0};
     good = end_settling(&settling, crew->threads, &failure) && good;
-    enf_pluecker_free(&pluecker);
     if (!done) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
     if (good) return ENF_OK;
     return failure.status ? enf_fail(error, failure.status, "%s", failure.text)

@@ -11,6 +11,7 @@
 
 typedef struct enf_settlement {
     const enf_shapes *shapes;
+    const enf_pluecker *pluecker;
     const enf_bits *beams; ///< between portals
     const enf_bits *cells; ///< the same between cells: bit j of row i: cell i may see cell j
     bool exact;            ///< real lines; otherwise the linear relaxation

@@ -41,6 +41,18 @@ static void make_sphere(enf_shape *shape, const double (*corners)[3], int32_t co
     shape->radius = sqrt(square) * (1 + 0x1p-40);
 }
 
+static void make_box(enf_shape *shape, const double (*corners)[3], int32_t count) {
+    shape->flat_axis = -1;
+    for (int axis = 0; axis < 3; axis++) {
+        shape->low[axis] = shape->high[axis] = corners[0][axis];
+        for (int32_t i = 1; i < count; i++) {
+            shape->low[axis] = fmin(shape->low[axis], corners[i][axis]);
+            shape->high[axis] = fmax(shape->high[axis], corners[i][axis]);
+        }
+        if (shape->low[axis] == shape->high[axis]) shape->flat_axis = axis;
+    }
+}
+
 /// The rectangle around the winding in its plane.
 static void make_rectangle(const enf_shape *shape, const double (*corners)[3], int32_t count,
                            double rectangle[4][3]) {
@@ -78,6 +90,7 @@ static void make_shape(enf_shapes *shapes, int32_t opening, int32_t *first, doub
     int32_t count = graph->opening_corner[opening + 1] - graph->opening_corner[opening];
     make_plane(shape, corners, count);
     make_axes(shape);
+    make_box(shape, corners, count);
     *bend = fmax(*bend, measure_bend(shape, corners, count));
     shape->first = *first;
     shape->count = count;

@@ -9,6 +9,8 @@
 typedef struct enf_shape {
     double normal[3], offset; ///< the plane of portal 2k, normal of length 1
     double centre[3], radius; ///< a sphere around the corners
+    double low[3], high[3];   ///< the box of its corners
+    int32_t flat_axis;        ///< all corners have the same coordinate along this axis; -1: no such axis
     int32_t first, count;     ///< of its corners in outlines
     int32_t axes[2];          ///< seen along the third axis (from its far end) it turns counter-clockwise
 } enf_shape;

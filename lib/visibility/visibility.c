@@ -34,6 +34,7 @@ typedef struct ladder {
     const enf_visibility_options *options;
     enf_visibility *visibility;
     enf_shapes shapes;
+    enf_pluecker pluecker;
     enf_sight sight;
     enf_bits facing; ///< between portals
     enf_cast cast;
@@ -120,7 +121,9 @@ static bool add_neighbours(enf_sightings *sightings, const enf_portal_graph *gra
 
 static enf_status face(ladder *ladder, enf_error *error) {
     enf_crew crew = crew_for(ladder, "facing");
-    if (!enf_shapes_make(&ladder->shapes, ladder->graph)) return enf_fail_memory(error, "the portals");
+    if (!enf_shapes_make(&ladder->shapes, ladder->graph) ||
+        !enf_pluecker_make(&ladder->pluecker, ladder->graph))
+        return enf_fail_memory(error, "the portals");
     enf_status status = enf_facing_find(&ladder->facing, &ladder->shapes, &crew, error);
     if (!status && ladder->options->method == ENF_METHOD_FACING)
         set_cells(ladder->graph, &ladder->facing, &ladder->visibility->pvs);
@@ -156,6 +159,7 @@ static enf_status settle(ladder *ladder, enf_error *error) {
     enf_crew crew = crew_for(ladder, enf_method_name(ladder->options->method));
     const enf_bits cells = {pvs->cell_count, pvs->row_words, pvs->rows};
     enf_settlement settlement = {.shapes = &ladder->shapes,
+                                 .pluecker = &ladder->pluecker,
                                  .beams = &ladder->cast.beams,
                                  .cells = &cells,
                                  .exact = ladder->options->method == ENF_METHOD_EXACT,
@@ -233,6 +237,7 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
     enf_bits_free(&ladder.cast.beams);
     enf_bits_free(&ladder.facing);
     enf_sight_free(&ladder.sight);
+    enf_pluecker_free(&ladder.pluecker);
     enf_shapes_free(&ladder.shapes);
     visibility->seconds = enf_timer_now() - started;
     visibility->cpu_seconds = enf_timer_cpu() - cpu_started;
