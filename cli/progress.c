@@ -3,13 +3,15 @@
 
 #include "base/timer.h"
 
+#include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 static const double patience = 1.0, redraw_interval = 0.05; // seconds
-enum { BAR_WIDTH = 40 };
+static const double telling = 0.01; // no time left is told before so much of a stage has been seen
+enum { BAR_WIDTH = 30 };
 
 const char *const cli_progress_modes[] = {"auto", "always", "never", NULL};
 
@@ -32,12 +34,32 @@ void cli_progress_start(cli_progress *progress, cli_progress_mode mode) {
     sigaction(SIGTERM, &action, NULL);
 }
 
+/// 1:23, or 4:05:00.
+static void print_time(double seconds) {
+    int64_t whole = (int64_t)(seconds + 0.5);
+    if (whole >= 3600) fprintf(stderr, "%" PRId64 ":%02d:", whole / 3600, (int)(whole / 60 % 60));
+    if (whole < 3600) fprintf(stderr, "%d:", (int)(whole / 60));
+    fprintf(stderr, "%02d", (int)(whole % 60));
+}
+
+static void print_times(const cli_progress *progress, double fraction) {
+    double seen = fraction - progress->stage_first, spent = progress->drawn - progress->stage_started;
+    fputs("  ", stderr);
+    print_time(progress->drawn - progress->started);
+    if (seen < telling || spent < patience || fraction >= 1) return;
+    fputs(", about ", stderr);
+    print_time(spent * (1 - fraction) / seen);
+    fputs(" left", stderr);
+}
+
 static void draw_bar(cli_progress *progress, const char *stage, double fraction) {
     int filled = (int)(fraction * BAR_WIDTH);
     char bar[BAR_WIDTH + 1];
     for (int i = 0; i < BAR_WIDTH; i++) bar[i] = i < filled ? '#' : '.';
     bar[BAR_WIDTH] = 0;
-    fprintf(stderr, "\r%-14s [%s] %3d %%\033[K", stage, bar, (int)(fraction * 100));
+    fprintf(stderr, "\r%-14s [%s] %3d %%", stage, bar, (int)(fraction * 100));
+    print_times(progress, fraction);
+    fputs("\033[K", stderr);
     fflush(stderr);
     progress->visible = true;
 }
@@ -56,6 +78,11 @@ bool cli_progress_report(void *user, const char *stage, double fraction) {
         return true;
     }
     double now = enf_timer_now();
+    if (!progress->timed || strcmp(progress->timed, stage) != 0) {
+        progress->timed = stage;
+        progress->stage_started = now;
+        progress->stage_first = fraction;
+    }
     if (progress->mode == CLI_PROGRESS_AUTO && now - progress->started < patience) return true;
     if (!new_stage && now - progress->drawn < redraw_interval) return true;
     progress->drawn = now;

@@ -18,10 +18,14 @@ typedef struct cli_progress {
     double started, drawn; ///< seconds
     bool visible;          ///< a bar stands on the terminal's last line
     const char *stage;     ///< the one last drawn
+    const char *timed;     ///< the one that the two below are of
+    double stage_started;  ///< seconds
+    double stage_first;    ///< the fraction that it began with: what an earlier run has done
 } cli_progress;
 
 /// Starts the clock; from now on the first SIGINT or SIGTERM makes cli_progress_report return false, the
-/// second kills. Auto: a bar if standard error is a terminal and the job has lasted a second.
+/// second kills. The bar has the time since the start, and what is left of the stage at its speed so far, if
+/// fractions are of its work. Auto: a bar if standard error is a terminal and the job has lasted a second.
 void cli_progress_start(cli_progress *progress, cli_progress_mode mode);
 
 /// An enf_progress; `user` is the cli_progress.

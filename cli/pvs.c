@@ -7,6 +7,7 @@
 #include "cli/job.h"
 #include "cli/paths.h"
 #include "cli/pvs_report.h"
+#include "cli/pvs_team.h"
 #include "enfilade/run.h"
 #include "format/output.h"
 #include "visibility/read_prt.h"
@@ -14,15 +15,19 @@
 #include "visibility/world_graph.h"
 
 #include <inttypes.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct request {
     cli_texts inputs;
-    const char *output, *report, *witness;
+    const char *output, *report, *witness, *checkpoint;
     int method, threads, progress;
     double budget;
     bool verbose, quiet;
+    const enf_team *team; ///< or null
+    bool leads;           ///< alone, or rank 0: it reads, writes and speaks
 } request;
 
 /// The graph of a world file: its cells are those that it was compiled into.
@@ -37,22 +42,46 @@ static enf_status read_world(enf_portal_graph *graph, const enf_source *source, 
 }
 
 /// What kind of file it is, its content says.
-static enf_status read_graph(cli_pvs_result *result, const char *path, enf_error *error) {
+static enf_status read_graph(cli_pvs_result *result, enf_source *source, enf_error *error) {
     static const char magic[] = ENF_FILE_MAGIC;
-    enf_source source;
-    bool is_world = false; // its cells need not be convex: no reason to warn
-    enf_status status = enf_source_open(&source, path, error);
-    if (!status) {
-        result->input = strcmp(path, "-") == 0 ? "standard input" : path;
-        result->input_hash = enf_hash64(source.data, source.size, 0);
-        is_world = source.size >= strlen(magic) && memcmp(source.data, magic, strlen(magic)) == 0;
-        if (is_world)
-            status = read_world(&result->graph, &source, error);
-        else
-            status = enf_read_prt(&result->graph, &source, error);
+    bool is_world = source->size >= strlen(magic) && memcmp(source->data, magic, strlen(magic)) == 0;
+    result->input_hash = enf_hash64(source->data, source->size, 0);
+    if (is_world) return read_world(&result->graph, source, error); // its cells need not be convex
+    enf_status status = enf_read_prt(&result->graph, source, error);
+    if (!status) enf_portal_graph_find_non_convex(&result->graph);
+    return status;
+}
+
+enum { SHARED_HEADER = 16 }; ///< world files must be aligned
+
+/// The others get the source from rank 0: first its status, then, if that is fine, the bytes, into *bytes.
+static enf_status share_source(const enf_team *team, enf_status status, enf_source *source, enf_bytes *bytes,
+                               enf_error *error) {
+    const char *name = source->name;
+    if (team->rank == 0) {
+        enf_put_word(bytes, status, 8);
+        enf_put_word(bytes, 0, SHARED_HEADER - 8);
+        if (!status) enf_put_bytes(bytes, source->data, source->size + 1);
     }
+    if (bytes->failed || !team->share(team->user, bytes)) return enf_fail_memory(error, "the input");
+    if (team->rank == 0 || bytes->data[0]) return (enf_status)bytes->data[0];
+    return enf_source_over(source, name, (const char *)bytes->data + SHARED_HEADER,
+                           bytes->count - SHARED_HEADER - 1, error);
+}
+
+/// Reads the input, unless something failed before. All processes come to the same; rank 0 alone has words
+/// for what fails.
+static enf_status load(cli_pvs_result *result, const request *request, enf_status status, enf_error *error) {
+    const char *path = request->inputs.items[0];
+    enf_source source = {.name = path};
+    enf_bytes bytes = {0};
+    result->input = strcmp(path, "-") == 0 ? "standard input" : path;
+    if (!status && request->leads) status = enf_source_open(&source, path, error);
+    if (request->team) status = share_source(request->team, status, &source, &bytes, error);
+    if (!status) status = read_graph(result, &source, error);
+    if (!request->leads) error->text[0] = 0;
     enf_source_close(&source);
-    if (!status && !is_world) enf_portal_graph_find_non_convex(&result->graph);
+    enf_bytes_free(&bytes);
     return status;
 }
 
@@ -87,17 +116,18 @@ static enf_status write_outputs(const request *request, const cli_pvs_result *re
     return status;
 }
 
-static enf_status find(cli_pvs_result *result, const request *request, cli_progress *progress,
-                       enf_error *error) {
-    double started = enf_timer_now();
-    cli_progress_report(progress, "read", 0);
-    enf_status status = read_graph(result, request->inputs.items[0], error);
-    if (!status && cli_was_interrupted()) status = ENF_NO_RESOURCES;
-    if (!status) status = enf_visibility_run(&result->visibility, &result->graph, &result->options, error);
-    if (!status && !cli_progress_report(progress, "write", 0)) status = ENF_NO_RESOURCES;
-    result->seconds = enf_timer_now() - started;
-    result->peak_bytes = enf_memory_peak();
-    return status;
+static enf_status find(cli_pvs_result *result, const request *request, enf_error *error) {
+    enf_status status = enf_visibility_run(&result->visibility, &result->graph, &result->options, error);
+    if (!status) return ENF_OK;
+    enf_error why = *error;
+    if (!request->leads)
+        enf_fail(error, status, "rank %d: %.1000s", request->team->rank, why.text);
+    else if (cli_was_interrupted())
+        enf_fail(error, ENF_NO_RESOURCES, "%s; %s was not written%s%s",
+                 request->team ? "stopped: cancelled, or a process was lost" : "cancelled", request->output,
+                 request->checkpoint ? "; the same command goes on from what is in " : "",
+                 request->checkpoint ? request->checkpoint : "");
+    return error->status;
 }
 
 static void warn_of_shape(const enf_portal_graph *graph) {
@@ -117,44 +147,98 @@ static void tell(const cli_pvs_result *result, const request *request) {
     cli_pvs_report_summary(result, request->output, stderr);
 }
 
+static void prepare(cli_pvs_result *result, const request *request, cli_progress *progress) {
+    if (request->leads) {
+        cli_progress_start(progress, (cli_progress_mode)request->progress);
+    } else { // rank 0 ends all when it is asked to
+        signal(SIGINT, SIG_IGN);
+        signal(SIGTERM, SIG_IGN);
+    }
+    result->processes = request->team ? request->team->size : 1;
+    result->options = (enf_visibility_options){.method = (enf_method)request->method,
+                                               .threads = request->threads,
+                                               .want_witnesses = request->witness != NULL,
+                                               .progress = request->leads ? cli_progress_report : NULL,
+                                               .progress_user = progress,
+                                               .budget_seconds = request->budget,
+                                               .checkpoint = request->checkpoint,
+                                               .team = request->team};
+}
+
+/// What rank 0 does at the end. A checkpoint stays if it can still be of use: with a larger budget.
+static enf_status finish(cli_pvs_result *result, const request *request, outputs *outputs, double started,
+                         enf_error *error) {
+    result->seconds = enf_timer_now() - started;
+    result->peak_bytes = enf_memory_peak();
+    enf_status status = write_outputs(request, result, outputs, error);
+    if (!status && request->checkpoint && !cli_pvs_is_late(result)) unlink(request->checkpoint);
+    return status;
+}
+
 static int run(const request *request) {
     cli_pvs_result result = {0};
     enf_error error = {0};
     outputs outputs = {0};
-    cli_progress progress;
-    cli_progress_start(&progress, (cli_progress_mode)request->progress);
-    result.options = (enf_visibility_options){.method = (enf_method)request->method,
-                                              .threads = request->threads,
-                                              .want_witnesses = request->witness != NULL,
-                                              .progress = cli_progress_report,
-                                              .progress_user = &progress,
-                                              .budget_seconds = request->budget};
-    enf_status status = open_outputs(request, &outputs, &error);
-    if (!status) status = find(&result, request, &progress, &error);
-    if (!status) status = write_outputs(request, &result, &outputs, &error);
-    cli_progress_stop(&progress);
+    cli_progress progress = {0};
+    double started = enf_timer_now();
+    prepare(&result, request, &progress);
+    if (request->leads) cli_progress_report(&progress, "read", 0);
+    enf_status status = request->leads ? open_outputs(request, &outputs, &error) : ENF_OK;
+    status = load(&result, request, status, &error);
+    bool begun = !status; // from here on, who fails fails alone
+    if (begun) status = find(&result, request, &error);
+    bool alone = begun && status;
+    if (!status && request->leads) {
+        cli_progress_report(&progress, "write", 0);
+        status = finish(&result, request, &outputs, started, &error);
+    }
+    if (request->leads) cli_progress_stop(&progress);
     discard_outputs(&outputs);
-    if (status && cli_was_interrupted())
-        status = enf_fail(&error, ENF_NO_RESOURCES, "cancelled; %s was not written", request->output);
-    else if (!status && !request->quiet)
-        tell(&result, request);
+    if (!status && request->leads && !request->quiet) tell(&result, request);
     enf_visibility_free(&result.visibility);
     enf_portal_graph_free(&result.graph);
-    return status ? cli_fail(&error) : ENF_OK;
+    if (status && error.text[0]) fprintf(stderr, "%s\n", error.text);
+    if (alone) cli_team_abort(request->team, (int)status);
+    return (int)status;
 }
 
-static int check_and_run(const cli_syntax *syntax, const request *request) {
-    const char *outputs[] = {request->output, request->report, request->witness};
+static int check(const cli_syntax *syntax, const request *request) {
+    const char *outputs[] = {request->output, request->report, request->witness, request->checkpoint};
     if (!request->output) return cli_misuse(syntax, "-o OUT is missing");
     if (request->verbose && request->quiet) return cli_misuse(syntax, "-v and -q contradict each other");
-    const char *clash = cli_find_clash(&request->inputs, outputs, 3);
+    if (request->checkpoint && strcmp(request->checkpoint, "-") == 0)
+        return cli_misuse(syntax, "--checkpoint: '-' is no file that could be read again");
+    const char *clash = cli_find_clash(&request->inputs, outputs, 4);
     if (clash)
         return cli_misuse(syntax, "'%.100s' would be written over; give every file a name of its own", clash);
-    return run(request);
+    return -1;
 }
 
-int cli_pvs(int argc, char **argv) {
-    request request = {.method = ENF_METHOD_EXACT, .threads = cli_default_threads()};
+/// -1: go on. All processes have the same words; rank 0 alone complains of them.
+static int understand(const cli_syntax *syntax, int argc, char **argv, request *request) {
+    enf_bytes answer = {0};
+    int status = -1;
+    if (request->leads) {
+        status = cli_parse(syntax, argc, argv, &request->inputs);
+        if (status < 0) status = check(syntax, request);
+    }
+    if (request->team) {
+        if (request->leads) enf_put_word(&answer, (uint64_t)(status + 1), 1);
+        if (!request->team->share(request->team->user, &answer) || answer.count == 0)
+            status = ENF_NO_RESOURCES;
+        else
+            status = answer.data[0] - 1;
+        enf_bytes_free(&answer);
+    }
+    return status < 0 && !request->leads ? cli_parse(syntax, argc, argv, &request->inputs) : status;
+}
+
+/// The command of one process.
+static int run_one(int argc, char **argv, const enf_team *team) {
+    request request = {.method = ENF_METHOD_EXACT,
+                       .threads = cli_team_threads(team),
+                       .team = team,
+                       .leads = !team || team->rank == 0};
     cli_option options[] = {
         {"--output", 'o', CLI_TEXT, &request.output, "OUT", "the text file to write", NULL, false},
         {"--method", 0, CLI_CHOICE, &request.method, "METHOD",
@@ -165,6 +249,8 @@ int cli_pvs(int argc, char **argv) {
          NULL, false},
         {"--budget", 0, CLI_LENGTH, &request.budget, "SECONDS",
          "what is not decided by then counts as seen; default 0: no end", NULL, false},
+        {"--checkpoint", 0, CLI_TEXT, &request.checkpoint, "FILE",
+         "keep what is done in FILE; go on from it if it is there; removed at the end", NULL, false},
         {"--report", 0, CLI_TEXT, &request.report, "FILE.json", "write what was done, for scripts", NULL,
          false},
         {"--witness", 0, CLI_TEXT, &request.witness, "FILE",
@@ -186,8 +272,15 @@ int cli_pvs(int argc, char **argv) {
         .operands_min = 1,
         .operands_max = 1,
         .operand = "the input file"};
-    int status = cli_parse(&syntax, argc, argv, &request.inputs);
-    if (status < 0) status = check_and_run(&syntax, &request);
+    int status = understand(&syntax, argc, argv, &request);
+    if (status < 0) status = run(&request);
     free(request.inputs.items);
+    return status;
+}
+
+int cli_pvs(int argc, char **argv) {
+    const enf_team *team = cli_team_join();
+    int status = run_one(argc, argv, team);
+    cli_team_leave(team);
     return status;
 }

@@ -55,6 +55,7 @@ static void put_visibility(enf_json *json, const enf_visibility *visibility) {
     enf_json_whole(json, "pairs_open", visibility->pairs_open);
     enf_json_whole(json, "nodes", visibility->nodes);
     put_stabs(json, &visibility->stabs);
+    enf_json_whole(json, "jobs_stored", visibility->jobs_stored);
     enf_json_whole(json, "cells_budgeted", visibility->cells_budgeted);
     enf_json_whole(json, "pairs_budgeted", visibility->pairs_budgeted);
     enf_json_whole(json, "sequence_longest", visibility->sequence_longest);
@@ -89,30 +90,40 @@ void cli_pvs_report_json(const cli_pvs_result *result, FILE *out) {
     enf_json_number(&json, "seconds", result->seconds);
     enf_json_whole(&json, "peak_bytes", (int64_t)result->peak_bytes);
     enf_json_whole(&json, "threads", result->options.threads);
+    enf_json_whole(&json, "processes", result->processes);
     put_options(&json, &result->options);
     enf_json_end_object(&json);
     enf_json_finish(&json);
 }
 
+bool cli_pvs_is_late(const cli_pvs_result *result) {
+    return result->visibility.cells_budgeted + result->visibility.pairs_budgeted > 0;
+}
+
 void cli_pvs_report_summary(const cli_pvs_result *result, const char *output, FILE *out) {
     const enf_visibility *visibility = &result->visibility;
+    const char *checkpoint = result->options.checkpoint;
     fprintf(out,
             "%s: %" PRId32 " cells, %" PRId32 " portals; by %s %" PRId64
             " pairs, a cell sees %.1f on average; %.2f s, %.0f MB\n",
             output, result->graph.cell_count, result->graph.opening_count,
             enf_method_name(visibility->method), enf_pvs_pairs(&visibility->pvs),
             enf_pvs_mean_seen(&visibility->pvs), result->seconds, (double)result->peak_bytes / 1e6);
-    if (visibility->cells_budgeted + visibility->pairs_budgeted > 0)
+    if (cli_pvs_is_late(result))
         fprintf(out,
                 "the budget of %g s ran out for the beams of %" PRId64 " cells and for %" PRId64
-                " pairs: what might be seen counts as seen; a larger --budget tells more\n",
-                result->options.budget_seconds, visibility->cells_budgeted, visibility->pairs_budgeted);
+                " pairs: what might be seen counts as seen; a larger --budget tells more%s%s\n",
+                result->options.budget_seconds, visibility->cells_budgeted, visibility->pairs_budgeted,
+                checkpoint ? ", and goes on from " : "", checkpoint ? checkpoint : "");
 }
 
 void cli_pvs_report_verbose(const cli_pvs_result *result, FILE *out) {
     const enf_visibility *visibility = &result->visibility;
-    fprintf(out, "visibility     %8.3f s, %.3f s of processor time on %d threads\n", visibility->seconds,
+    fprintf(out, "visibility     %8.3f s, %.3f s of processor time on %d threads", visibility->seconds,
             visibility->cpu_seconds, result->options.threads);
+    fprintf(out, result->processes > 1 ? " of rank 0 of %d\n" : "\n", result->processes);
+    if (result->options.checkpoint)
+        fprintf(out, "checkpoint     %8" PRId64 " results were there already\n", visibility->jobs_stored);
     fprintf(out, "beams          %8" PRId64 " portal pairs by %" PRId64 " visits; %" PRId64 " sight lines\n",
             visibility->portal_pairs, visibility->visits, visibility->lines);
     fprintf(out,

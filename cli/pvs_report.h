@@ -13,9 +13,13 @@ typedef struct cli_pvs_result {
     enf_portal_graph graph;
     enf_visibility_options options;
     enf_visibility visibility;
+    int processes;  ///< that worked on it
     double seconds; ///< in all, reading too
     uint64_t peak_bytes;
 } cli_pvs_result;
+
+/// True if the budget ran out before everything was decided.
+bool cli_pvs_is_late(const cli_pvs_result *result);
 
 /// The report (--report). Its keys are fixed: scripts rely on them.
 void cli_pvs_report_json(const cli_pvs_result *result, FILE *out);

@@ -4,6 +4,7 @@
 #include "base/array.h"
 #include "base/timer.h"
 #include "visibility/beams.h"
+#include "visibility/coding.h"
 #include "visibility/facing.h"
 
 #include <stdlib.h>
@@ -14,30 +15,41 @@ enum { PASSED_MOST = 4096 };
 /// What one thread has.
 typedef struct caster {
     enf_beams *beams;
-    int64_t lines;
-    int32_t cells_budgeted;
-    bool failed;
     int32_t passed[PASSED_MOST];
 } caster;
+
+/// What is known of a cell's beams, besides their rows.
+typedef struct cast_result {
+    bool late; ///< not all portals had their turn
+    int64_t visits, lines;
+} cast_result;
 
 typedef struct casting {
     enf_cast *cast;
     enf_sightings *sightings;
+    double deadline;
     caster *casters;
+    cast_result *results; ///< per cell
+    int64_t *cost;        ///< per cell: portals that face its own
+    bool *begun;          ///< per cell
 } casting;
+
+static const enf_portal_graph *graph_of(const casting *casting) {
+    return casting->cast->sight->shapes->graph;
+}
 
 /// Sends a line through the middle of the portal and of what its beams reach of another; notes which cells it
 /// comes through.
 static bool send_line(const casting *casting, caster *caster, int32_t source, int32_t target) {
     const enf_sight *sight = casting->cast->sight;
-    const enf_portal_graph *graph = sight->shapes->graph;
+    const enf_portal_graph *graph = graph_of(casting);
     int32_t cell = enf_portal_from(graph, source);
     enf_window window;
     enf_line line;
     enf_beams_window(caster->beams, target, &window);
     memcpy(line.from, sight->shapes->shapes[source >> 1].centre, sizeof line.from);
     enf_window_middle(&window, line.to);
-    caster->lines++;
+    casting->results[cell].lines++;
     int32_t count = enf_sight_walk(sight, &line, source, caster->passed, PASSED_MOST);
     for (int32_t i = -1; i < count; i++) {
         enf_sighting seen = {enf_portal_to(graph, i < 0 ? source : caster->passed[i]), i + 2};
@@ -65,26 +77,71 @@ static bool cast_portal(const casting *casting, caster *caster, int32_t source) 
     return true;
 }
 
-static void cast_job(void *user, int32_t cell, int thread) {
-    const casting *casting = user;
-    caster *caster = &casting->casters[thread];
+// ---------------------------------------------------------------------------------------------- jobs
+
+/// For portals that had no turn.
+static void keep_facing(const casting *casting, int32_t portal) {
     enf_cast *cast = casting->cast;
-    const enf_portal_graph *graph = cast->sight->shapes->graph;
-    bool late = enf_timer_now() > cast->deadline;
-    caster->cells_budgeted += late;
-    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1] && !caster->failed; k++) {
-        int32_t portal = graph->cell_portals[k];
-        if (late)
-            memcpy(enf_bits_row(&cast->beams, portal), enf_bits_row(cast->facing, portal),
-                   cast->beams.row_words * sizeof(uint64_t));
-        else
-            caster->failed = !cast_portal(casting, caster, portal);
-    }
+    memcpy(enf_bits_row(&cast->beams, portal), enf_bits_row(cast->facing, portal),
+           cast->beams.row_words * sizeof(uint64_t));
 }
 
-static bool make_casters(casting *casting, int threads) {
+static enf_status run_cell(void *user, int32_t cell, int thread, bool *late, enf_error *error) {
+    const casting *casting = user;
+    const enf_portal_graph *graph = graph_of(casting);
+    caster *caster = &casting->casters[thread];
+    cast_result *result = &casting->results[cell];
+    int64_t visits = enf_beams_visits(caster->beams);
+    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
+        result->late = result->late || enf_timer_now() > casting->deadline;
+        if (result->late)
+            keep_facing(casting, graph->cell_portals[k]);
+        else if (!cast_portal(casting, caster, graph->cell_portals[k]))
+            return enf_fail_memory(error, "the beams");
+    }
+    result->visits = enf_beams_visits(caster->beams) - visits;
+    *late = result->late;
+    return ENF_OK;
+}
+
+static void encode_cell(void *user, int32_t cell, enf_bytes *bytes) {
+    const casting *casting = user;
+    const enf_portal_graph *graph = graph_of(casting);
+    const enf_bits *beams = &casting->cast->beams;
+    const cast_result *result = &casting->results[cell];
+    enf_put_number(bytes, result->late);
+    enf_put_number(bytes, (uint64_t)result->visits);
+    enf_put_number(bytes, (uint64_t)result->lines);
+    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
+        enf_put_row(bytes, enf_bits_row(beams, graph->cell_portals[k]), beams->row_words);
+    if (casting->sightings) enf_put_sightings(bytes, casting->sightings, cell, 0);
+}
+
+static bool decode_cell(void *user, int32_t cell, enf_reader *reader) {
+    const casting *casting = user;
+    const enf_portal_graph *graph = graph_of(casting);
+    const enf_bits *beams = &casting->cast->beams;
+    cast_result *result = &casting->results[cell];
+    result->late = enf_take_number(reader, 1);
+    result->visits = (int64_t)enf_take_number(reader, ENF_COUNT_MOST);
+    result->lines = (int64_t)enf_take_number(reader, ENF_COUNT_MOST);
+    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
+        enf_take_row(reader, enf_bits_row(beams, graph->cell_portals[k]), beams->row_count);
+    return !casting->sightings || enf_take_sightings(reader, casting->sightings, cell);
+}
+
+// ---------------------------------------------------------------------------------------------- all
+
+static bool make_casting(casting *casting, int threads) {
+    const enf_portal_graph *graph = graph_of(casting);
+    size_t cells = (size_t)graph->cell_count;
+    casting->results = enf_array_zeroed(cells, sizeof *casting->results);
+    casting->cost = enf_array_zeroed(cells, sizeof *casting->cost);
+    casting->begun = enf_array_zeroed(cells, sizeof *casting->begun);
     casting->casters = enf_array_zeroed((size_t)threads, sizeof *casting->casters);
-    if (!casting->casters) return false;
+    if (!enf_bits_new(&casting->cast->beams, 2 * graph->opening_count, 2 * graph->opening_count) ||
+        !casting->results || !casting->cost || !casting->begun || !casting->casters)
+        return false;
     for (int i = 0; i < threads; i++) {
         casting->casters[i].beams = enf_beams_new(casting->cast->sight->shapes, casting->cast->facing);
         if (!casting->casters[i].beams) return false;
@@ -92,31 +149,53 @@ static bool make_casters(casting *casting, int threads) {
     return true;
 }
 
-/// Sums up, and frees them. False if one has failed.
-static bool end_casters(casting *casting, int threads) {
-    bool good = true;
-    for (int i = 0; casting->casters && i < threads; i++) {
-        caster *caster = &casting->casters[i];
-        casting->cast->lines += caster->lines;
-        casting->cast->cells_budgeted += caster->cells_budgeted;
-        if (caster->beams) casting->cast->visits += enf_beams_visits(caster->beams);
-        good = good && !caster->failed;
-        enf_beams_free(caster->beams);
-    }
+static void free_casting(casting *casting, int threads) {
+    for (int i = 0; casting->casters && i < threads; i++) enf_beams_free(casting->casters[i].beams);
     free(casting->casters);
-    return good;
+    free(casting->results);
+    free(casting->cost);
+    free(casting->begun);
 }
 
-enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, const enf_crew *crew, enf_error *error) {
-    const enf_portal_graph *graph = cast->sight->shapes->graph;
-    casting casting = {.cast = cast, .sightings = sightings};
-    int32_t portals = 2 * graph->opening_count;
-    bool good = enf_bits_new(&cast->beams, portals, portals) && make_casters(&casting, crew->threads),
-         done = true;
-    if (good) done = enf_parallel_for(crew, graph->cell_count, cast_job, &casting);
-    good = end_casters(&casting, crew->threads) && good;
-    if (!done) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
-    if (!good) return enf_fail_memory(error, "the beams");
-    enf_facing_symmetrise(&cast->beams);
-    return ENF_OK;
+static void find_cost(casting *casting) {
+    const enf_portal_graph *graph = graph_of(casting);
+    const enf_bits *facing = casting->cast->facing;
+    for (int32_t p = 0; p < facing->row_count; p++)
+        casting->cost[enf_portal_from(graph, p)] +=
+            1 + enf_bits_count(enf_bits_row(facing, p), facing->row_words);
+}
+
+/// Sums up. Cells that had no turn see what faces them.
+static void sum_up(casting *casting) {
+    const enf_portal_graph *graph = graph_of(casting);
+    enf_cast *cast = casting->cast;
+    for (int32_t c = 0; c < graph->cell_count; c++) {
+        bool none = casting->cost[c] > 0 && !casting->begun[c];
+        for (int32_t k = graph->cell_portal[c]; none && k < graph->cell_portal[c + 1]; k++)
+            keep_facing(casting, graph->cell_portals[k]);
+        cast->visits += casting->results[c].visits;
+        cast->lines += casting->results[c].lines;
+        cast->cells_budgeted += none || casting->results[c].late;
+    }
+}
+
+enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, enf_workplace *place, enf_error *error) {
+    casting casting = {.cast = cast, .sightings = sightings, .deadline = place->deadline};
+    int threads = place->crew.threads;
+    enf_status status = make_casting(&casting, threads) ? ENF_OK : enf_fail_memory(error, "the beams");
+    if (!status) {
+        find_cost(&casting);
+        const enf_work work = {.stage = ENF_STAGE_CAST,
+                               .cell_count = graph_of(&casting)->cell_count,
+                               .cost = casting.cost,
+                               .user = &casting,
+                               .run = run_cell,
+                               .encode = encode_cell,
+                               .decode = decode_cell};
+        status = enf_work_run(&work, place, casting.begun, error);
+    }
+    if (!status) sum_up(&casting);
+    free_casting(&casting, threads);
+    if (!status) enf_facing_symmetrise(&cast->beams);
+    return status;
 }

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef _GNU_SOURCE
-#define _GNU_SOURCE // qsort_r
-#endif
 #include "visibility/settle.h"
 
 #include "base/array.h"
-#include "base/timer.h"
+#include "base/hash.h"
+#include "visibility/coding.h"
 #include "visibility/flow.h"
 
 #include <stdlib.h>
@@ -15,17 +13,28 @@
 typedef struct settler {
     enf_flow *flow;
     enf_sightings *sightings;
-    enf_error error;
-    bool failed;
+    bool failed; ///< no memory for a sighting
 } settler;
+
+/// What it took to settle a cell.
+typedef struct settle_result {
+    int64_t nodes;
+    enf_stab_counts stabs;
+} settle_result;
+
+enum { RESULT_COUNTS = sizeof(settle_result) / sizeof(int64_t) };
+_Static_assert(sizeof(settle_result) == RESULT_COUNTS * sizeof(int64_t), "a result is made of counts");
 
 typedef struct settling {
     enf_settlement *settlement;
     enf_sightings *sightings;
-    enf_bits targets; ///< bit j of row i: whether cells i and j see each other is for i to find out
-    int64_t *work;    ///< per cell: how much of that there is
-    int32_t *order;   ///< cells, the longest work first
-    bool *done;       ///< per cell
+    enf_bits targets;       ///< bit j of row i: whether cells i and j see each other is for i to find out
+    int64_t *work;          ///< per cell: how much of that there may be
+    int64_t *cost;          ///< per cell: how much there is
+    int32_t *first;         ///< per cell: sightings that were there before
+    settle_result *results; ///< per cell
+    bool *begun;            ///< per cell
+    bool *late;             ///< per cell: it was begun, but targets were left when time was over
     settler *settlers;
 } settling;
 
@@ -79,11 +88,13 @@ static void find_targets(settling *settling) {
     }
 }
 
-static int compare_work(const void *a, const void *b, void *user) {
-    const int64_t *work = user;
-    int32_t cell_a = *(const int32_t *)a, cell_b = *(const int32_t *)b;
-    if (work[cell_a] != work[cell_b]) return work[cell_a] > work[cell_b] ? -1 : 1;
-    return cell_a < cell_b ? -1 : 1;
+/// A cell takes the longer the more it may see, and the more of it is to be found out.
+static void find_cost(settling *settling) {
+    for (int32_t i = 0; i < settling->targets.row_count; i++) {
+        int64_t targets = enf_bits_count(enf_bits_row(&settling->targets, i), settling->targets.row_words);
+        settling->cost[i] = targets * (settling->work[i] + 1);
+        settling->first[i] = settling->sightings->cells[i].count;
+    }
 }
 
 // ---------------------------------------------------------------------------------------------- jobs
@@ -96,22 +107,65 @@ static void note(void *user, int32_t from, int32_t to, const enf_stab *stab, int
         settler->failed = true;
 }
 
-static void settle_job(void *user, int32_t index, int thread) {
-    const settling *settling = user;
-    settler *settler = &settling->settlers[thread];
-    int32_t cell = settling->order[index];
-    if (settler->failed || enf_timer_now() > settling->settlement->deadline) return;
-    if (enf_flow_settle(settler->flow, cell, enf_bits_row(&settling->targets, cell), &settler->error))
-        settler->failed = true;
-    settling->done[cell] = true;
+static void add_counts(settle_result *sum, const settle_result *counts, int sign) {
+    int64_t numbers[RESULT_COUNTS], more[RESULT_COUNTS];
+    memcpy(numbers, sum, sizeof numbers);
+    memcpy(more, counts, sizeof more);
+    for (int i = 0; i < RESULT_COUNTS; i++) numbers[i] += sign * more[i];
+    memcpy(sum, numbers, sizeof numbers);
 }
 
-/// Cells that were too late still have their targets: all of them count as seen.
+static settle_result counts_of(const enf_flow *flow) {
+    return (settle_result){enf_flow_nodes(flow), *enf_flow_stabs(flow)};
+}
+
+static enf_status run_cell(void *user, int32_t cell, int thread, bool *late, enf_error *error) {
+    const settling *settling = user;
+    settler *settler = &settling->settlers[thread];
+    settle_result before = counts_of(settler->flow), after;
+    enf_status status = enf_flow_settle(settler->flow, cell, enf_bits_row(&settling->targets, cell), error);
+    if (!status && settler->failed) status = enf_fail_memory(error, "the sight lines");
+    after = counts_of(settler->flow);
+    add_counts(&after, &before, -1);
+    settling->results[cell] = after;
+    *late = settling->late[cell] = false; // what is begun is brought to its end
+    return status;
+}
+
+static void encode_cell(void *user, int32_t cell, enf_bytes *bytes) {
+    const settling *settling = user;
+    int64_t counts[RESULT_COUNTS];
+    memcpy(counts, &settling->results[cell], sizeof counts);
+    enf_put_number(bytes, settling->late[cell]);
+    enf_put_counts(bytes, counts, RESULT_COUNTS);
+    enf_put_sightings(bytes, settling->sightings, cell, settling->first[cell]);
+}
+
+/// Only targets can have been seen.
+static bool decode_cell(void *user, int32_t cell, enf_reader *reader) {
+    const settling *settling = user;
+    const enf_cell_sightings *of = &settling->sightings->cells[cell];
+    uint64_t *targets = enf_bits_row(&settling->targets, cell);
+    int64_t counts[RESULT_COUNTS];
+    settling->late[cell] = enf_take_number(reader, 1);
+    enf_take_counts(reader, counts, RESULT_COUNTS);
+    memcpy(&settling->results[cell], counts, sizeof counts);
+    if (!enf_take_sightings(reader, settling->sightings, cell)) return false;
+    for (int32_t k = settling->first[cell]; k < of->count; k++) {
+        if (!enf_bit_get(targets, of->sightings[k].cell)) reader->failed = true;
+        enf_bit_clear(targets, of->sightings[k].cell);
+    }
+    return true;
+}
+
+// ---------------------------------------------------------------------------------------------- all
+
+/// Targets that cells had no time for count as seen.
 static bool add_late(settling *settling) {
     for (int32_t i = 0; i < settling->targets.row_count; i++) {
         const uint64_t *row = enf_bits_row(&settling->targets, i);
-        for (int32_t j = -1;
-             !settling->done[i] && (j = enf_bit_next(row, settling->targets.row_words, j + 1)) >= 0;) {
+        if (settling->begun[i] && !settling->late[i]) continue; // what is left there is hidden
+        for (int32_t j = -1; (j = enf_bit_next(row, settling->targets.row_words, j + 1)) >= 0;) {
             const enf_sighting sighting = {j, 0};
             settling->settlement->pairs_budgeted++;
             if (!enf_sightings_add(settling->sightings, i, &sighting, NULL)) return false;
@@ -120,31 +174,19 @@ static bool add_late(settling *settling) {
     return true;
 }
 
-static void add_stabs(enf_stab_counts *sum, const enf_stab_counts *counts) {
-    sum->calls += counts->calls;
-    sum->hints += counts->hints;
-    sum->zero_by_double += counts->zero_by_double;
-    sum->zero_by_whole += counts->zero_by_whole;
-    sum->programs += counts->programs;
-    sum->pivots += counts->pivots;
-    sum->searched += counts->searched;
-    sum->quadrics += counts->quadrics;
-    sum->quadrics_hidden += counts->quadrics_hidden;
-    sum->undecided += counts->undecided;
-    sum->lines_fine += counts->lines_fine;
-    sum->lines_long += counts->lines_long;
-    sum->lines_missing += counts->lines_missing;
-}
-
 static bool make_settling(settling *settling, int threads) {
     const enf_settlement *settlement = settling->settlement;
-    int32_t cells = settlement->shapes->graph->cell_count;
-    settling->work = enf_array_zeroed((size_t)cells, sizeof *settling->work);
-    settling->order = enf_array_new((size_t)cells, sizeof *settling->order);
-    settling->done = enf_array_zeroed((size_t)cells, sizeof *settling->done);
+    size_t cells = (size_t)settlement->shapes->graph->cell_count;
+    settling->work = enf_array_zeroed(cells, sizeof *settling->work);
+    settling->cost = enf_array_zeroed(cells, sizeof *settling->cost);
+    settling->first = enf_array_zeroed(cells, sizeof *settling->first);
+    settling->results = enf_array_zeroed(cells, sizeof *settling->results);
+    settling->begun = enf_array_zeroed(cells, sizeof *settling->begun);
+    settling->late = enf_array_zeroed(cells, sizeof *settling->late);
     settling->settlers = enf_array_zeroed((size_t)threads, sizeof *settling->settlers);
-    if (!enf_bits_new(&settling->targets, cells, cells) || !settling->work || !settling->order ||
-        !settling->done || !settling->settlers)
+    if (!enf_bits_new(&settling->targets, (int32_t)cells, (int32_t)cells) || !settling->work ||
+        !settling->cost || !settling->first || !settling->results || !settling->begun || !settling->late ||
+        !settling->settlers)
         return false;
     for (int i = 0; i < threads; i++) {
         settler *settler = &settling->settlers[i];
@@ -160,44 +202,54 @@ static bool make_settling(settling *settling, int threads) {
     return true;
 }
 
-/// Sums up, and frees everything. False if a thread has failed; *error says why, if it does.
-static bool end_settling(settling *settling, int threads, enf_error *error) {
-    bool good = true;
-    for (int i = 0; settling->settlers && i < threads; i++) {
-        settler *settler = &settling->settlers[i];
-        if (settler->flow) {
-            settling->settlement->nodes += enf_flow_nodes(settler->flow);
-            add_stabs(&settling->settlement->stabs, enf_flow_stabs(settler->flow));
-        }
-        if (settler->failed && good && error) *error = settler->error;
-        good = good && !settler->failed;
-        enf_flow_free(settler->flow);
-    }
+static void free_settling(settling *settling, int threads) {
+    for (int i = 0; settling->settlers && i < threads; i++) enf_flow_free(settling->settlers[i].flow);
     free(settling->settlers);
     free(settling->work);
-    free(settling->order);
-    free(settling->done);
+    free(settling->cost);
+    free(settling->first);
+    free(settling->results);
+    free(settling->begun);
+    free(settling->late);
     enf_bits_free(&settling->targets);
-    return good;
 }
 
-enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, const enf_crew *crew,
+/// What jobs go by: other beams or other sightings make other jobs.
+static uint64_t find_key(const settling *settling) {
+    const enf_bits *beams = settling->settlement->beams, *seen = &settling->sightings->seen;
+    uint64_t key = enf_hash64(beams->words, (size_t)beams->row_count * beams->row_words * 8, 0);
+    return enf_hash64(seen->words, (size_t)seen->row_count * seen->row_words * 8, key);
+}
+
+static enf_status settle_all(settling *settling, enf_workplace *place, enf_error *error) {
+    settle_result sum = {0};
+    enf_settlement *settlement = settling->settlement;
+    int32_t cells = settlement->shapes->graph->cell_count;
+    count_work(settling);
+    find_targets(settling);
+    find_cost(settling);
+    const enf_work work = {.stage = ENF_STAGE_SETTLE,
+                           .key = find_key(settling),
+                           .cell_count = cells,
+                           .cost = settling->cost,
+                           .user = settling,
+                           .run = run_cell,
+                           .encode = encode_cell,
+                           .decode = decode_cell};
+    enf_status status = enf_work_run(&work, place, settling->begun, error);
+    if (status) return status;
+    for (int32_t i = 0; i < cells; i++) add_counts(&sum, &settling->results[i], 1);
+    settlement->nodes = sum.nodes;
+    settlement->stabs = sum.stabs;
+    return add_late(settling) ? ENF_OK : enf_fail_memory(error, "the sight lines");
+}
+
+enf_status enf_settle_run(enf_settlement *settlement, enf_sightings *sightings, enf_workplace *place,
                           enf_error *error) {
     settling settling = {.settlement = settlement, .sightings = sightings};
-    int32_t cells = settlement->shapes->graph->cell_count;
-    bool good = make_settling(&settling, crew->threads), done = true;
-    if (good) {
-        count_work(&settling);
-        find_targets(&settling);
-        for (int32_t i = 0; i < cells; i++) settling.order[i] = i;
-        qsort_r(settling.order, (size_t)cells, sizeof *settling.order, compare_work, settling.work);
-        done = enf_parallel_for(crew, cells, settle_job, &settling);
-        good = !done || add_late(&settling);
-    }
-    enf_error failure = {0};
-    good = end_settling(&settling, crew->threads, &failure) && good;
-    if (!done) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
-    if (good) return ENF_OK;
-    return failure.status ? enf_fail(error, failure.status, "%s", failure.text)
-                          : enf_fail_memory(error, "the portal sequences");
+    enf_status status = make_settling(&settling, place->crew.threads)
+                            ? settle_all(&settling, place, error)
+                            : enf_fail_memory(error, "the portal sequences");
+    free_settling(&settling, place->crew.threads);
+    return status;
 }

@@ -39,7 +39,7 @@ typedef struct ladder {
     enf_bits facing; ///< between portals
     enf_cast cast;
     enf_sightings sightings;
-    double deadline;
+    enf_workplace place;
     const char *stage;
 } ladder;
 
@@ -49,9 +49,10 @@ static bool watch(void *user, double fraction) {
            ladder->options->progress(ladder->options->progress_user, ladder->stage, fraction);
 }
 
-static enf_crew crew_for(ladder *ladder, const char *stage) {
+static enf_workplace *place_for(ladder *ladder, const char *stage) {
     ladder->stage = stage;
-    return (enf_crew){.threads = ladder->options->threads, .watch = watch, .user = ladder};
+    ladder->place.crew = (enf_crew){.threads = ladder->options->threads, .watch = watch, .user = ladder};
+    return &ladder->place;
 }
 
 // ---------------------------------------------------------------------------------------------- reach
@@ -120,27 +121,30 @@ static bool add_neighbours(enf_sightings *sightings, const enf_portal_graph *gra
 // ---------------------------------------------------------------------------------------------- rungs
 
 static enf_status face(ladder *ladder, enf_error *error) {
-    enf_crew crew = crew_for(ladder, "facing");
+    enf_workplace *place = place_for(ladder, "facing");
     if (!enf_shapes_make(&ladder->shapes, ladder->graph) ||
         !enf_pluecker_make(&ladder->pluecker, ladder->graph))
         return enf_fail_memory(error, "the portals");
-    enf_status status = enf_facing_find(&ladder->facing, &ladder->shapes, &crew, error);
+    enf_status status = enf_facing_find(&ladder->facing, &ladder->shapes, &place->crew, error);
     if (!status && ladder->options->method == ENF_METHOD_FACING)
         set_cells(ladder->graph, &ladder->facing, &ladder->visibility->pvs);
     return status;
 }
 
+static bool wants_sightings(const enf_visibility_options *options) {
+    return options->method > ENF_METHOD_HOURGLASS || options->want_witnesses;
+}
+
 static enf_status cast(ladder *ladder, enf_error *error) {
     const enf_visibility_options *options = ladder->options;
-    enf_crew crew = crew_for(ladder, "hourglass");
-    bool wants_lines = options->method > ENF_METHOD_HOURGLASS || options->want_witnesses;
+    enf_workplace *place = place_for(ladder, "hourglass");
+    bool wants_lines = wants_sightings(options);
     if (!enf_sight_make(&ladder->sight, &ladder->shapes) ||
         !enf_sightings_new(&ladder->sightings, wants_lines ? ladder->graph->cell_count : 0,
                            options->want_witnesses))
         return enf_fail_memory(error, "the sight lines");
-    ladder->cast =
-        (enf_cast){.sight = &ladder->sight, .facing = &ladder->facing, .deadline = ladder->deadline};
-    enf_status status = enf_cast_run(&ladder->cast, wants_lines ? &ladder->sightings : NULL, &crew, error);
+    ladder->cast = (enf_cast){.sight = &ladder->sight, .facing = &ladder->facing};
+    enf_status status = enf_cast_run(&ladder->cast, wants_lines ? &ladder->sightings : NULL, place, error);
     enf_bits_free(&ladder->facing);
     if (status) return status;
     set_cells(ladder->graph, &ladder->cast.beams, &ladder->visibility->pvs);
@@ -156,15 +160,14 @@ static enf_status cast(ladder *ladder, enf_error *error) {
 static enf_status settle(ladder *ladder, enf_error *error) {
     enf_visibility *visibility = ladder->visibility;
     enf_pvs *pvs = &visibility->pvs;
-    enf_crew crew = crew_for(ladder, enf_method_name(ladder->options->method));
+    enf_workplace *place = place_for(ladder, enf_method_name(ladder->options->method));
     const enf_bits cells = {pvs->cell_count, pvs->row_words, pvs->rows};
     enf_settlement settlement = {.shapes = &ladder->shapes,
                                  .pluecker = &ladder->pluecker,
                                  .beams = &ladder->cast.beams,
                                  .cells = &cells,
-                                 .exact = ladder->options->method == ENF_METHOD_EXACT,
-                                 .deadline = ladder->deadline};
-    enf_status status = enf_settle_run(&settlement, &ladder->sightings, &crew, error);
+                                 .exact = ladder->options->method == ENF_METHOD_EXACT};
+    enf_status status = enf_settle_run(&settlement, &ladder->sightings, place, error);
     if (!status &&
         !(enf_sightings_symmetrise(&ladder->sightings) && add_neighbours(&ladder->sightings, ladder->graph)))
         status = enf_fail_memory(error, "the sight lines");
@@ -209,6 +212,13 @@ static enf_status take_witnesses(ladder *ladder, enf_error *error) {
     return ENF_OK;
 }
 
+static enf_status open_checkpoint(ladder *ladder, enf_error *error) {
+    const enf_visibility_options *options = ladder->options;
+    const enf_checkpoint_about about = {ladder->graph, options->method, options->want_witnesses};
+    if (!options->checkpoint || (options->team && options->team->rank > 0)) return ENF_OK;
+    return enf_checkpoint_open(&ladder->place.checkpoint, options->checkpoint, &about, error);
+}
+
 static enf_status climb(ladder *ladder, enf_error *error) {
     enf_method method = ladder->options->method;
     if (method == ENF_METHOD_REACH) return reach(ladder, error);
@@ -222,17 +232,22 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
                               const enf_visibility_options *options, enf_error *error) {
     double started = enf_timer_now(), cpu_started = enf_timer_cpu();
     *visibility = (enf_visibility){.method = options->method};
-    ladder ladder = {.graph = graph,
-                     .options = options,
-                     .visibility = visibility,
-                     .deadline = options->budget_seconds > 0 ? started + options->budget_seconds : INFINITY};
+    ladder ladder = {
+        .graph = graph,
+        .options = options,
+        .visibility = visibility,
+        .place = {.deadline = options->budget_seconds > 0 ? started + options->budget_seconds : INFINITY,
+                  .team = options->team}};
     enf_status status = enf_pvs_new(&visibility->pvs, graph->cell_count, error);
+    if (!status) status = open_checkpoint(&ladder, error);
     if (!status) status = climb(&ladder, error);
     visibility->portal_pairs = enf_bits_count(ladder.cast.beams.words, (size_t)ladder.cast.beams.row_count *
                                                                            ladder.cast.beams.row_words);
     visibility->visits = ladder.cast.visits;
     visibility->lines = ladder.cast.lines;
+    visibility->jobs_stored = ladder.place.stored;
     visibility->cells_budgeted = ladder.cast.cells_budgeted;
+    enf_checkpoint_close(ladder.place.checkpoint);
     enf_sightings_free(&ladder.sightings);
     enf_bits_free(&ladder.cast.beams);
     enf_bits_free(&ladder.facing);

@@ -7,6 +7,7 @@
 #include "visibility/portal_graph.h"
 #include "visibility/pvs.h"
 #include "visibility/stab.h"
+#include "visibility/team.h"
 
 /// Each is applied on top of the ones before it, so each set contains the next. A cell is seen if
 typedef enum enf_method {
@@ -36,6 +37,11 @@ typedef struct enf_visibility_options {
     void *progress_user;
 
     double budget_seconds; ///< for the dear methods; what is not decided by then counts as seen; 0: none
+
+    /// May be null: a file that keeps what is done. If it is there, the run goes on from it; it is the
+    /// caller's to remove (checkpoint.h).
+    const char *checkpoint;
+    const enf_team *team; ///< may be null; all processes run the same with it, and get the same
 } enf_visibility_options;
 
 typedef struct enf_visibility {
@@ -55,6 +61,7 @@ typedef struct enf_visibility {
     int64_t pairs_open;     ///< lp and exact: pairs of cells that neither beams nor lines had decided
     int64_t nodes;          ///< lp and exact: portals that sequences came to
     enf_stab_counts stabs;  ///< lp and exact: what it took to decide sequences
+    int64_t jobs_stored;    ///< what the checkpoint had already: results for a cell
     int64_t cells_budgeted; ///< cells whose beams were too late for the budget
     int64_t pairs_budgeted; ///< pairs that were, and count as seen
 
