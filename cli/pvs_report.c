@@ -37,6 +37,8 @@ static void put_stabs(enf_json *json, const enf_stab_counts *stabs) {
     enf_json_whole(json, "quadrics", stabs->quadrics);
     enf_json_whole(json, "quadrics_hidden", stabs->quadrics_hidden);
     enf_json_whole(json, "undecided", stabs->undecided);
+    enf_json_whole(json, "lines_fine", stabs->lines_fine);
+    enf_json_whole(json, "lines_long", stabs->lines_long);
     enf_json_whole(json, "lines_missing", stabs->lines_missing);
     enf_json_end_object(json);
 }

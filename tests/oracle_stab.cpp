@@ -9,7 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <bitset>
+#include <cstdlib>
+#include <regex>
 #include <set>
+#include <sstream>
+#include <string>
 #include <vector>
 
 namespace {
@@ -266,13 +270,45 @@ bool falls(const std::vector<vector> &rays, int sign) {
 
 } // namespace
 
-bool oracle_stab_passes(const oracle_edge *edges, int count, const double from[3], const double to[3]) {
-    const point start = exact(from), along = minus(exact(to), start);
+static bool passes(const oracle_edge *edges, int count, const point &start, const point &end) {
+    const point along = minus(end, start);
     for (int k = 0; k < count; k++) {
         const point a = minus(exact(edges[k].a), start), b = minus(exact(edges[k].b), start);
         if (!(dot(along, cross(a, b)) > 0)) return false;
     }
     return true;
+}
+
+bool oracle_stab_passes(const oracle_edge *edges, int count, const double from[3], const double to[3]) {
+    return passes(edges, count, exact(from), exact(to));
+}
+
+// A sign or none, digits with a point or without, an exponent or none.
+static bool parse(const std::string &word, rational &out) {
+    const std::regex form("(-?)([0-9]+)\\.?([0-9]*)(e([-+])([0-9]+))?");
+    std::smatch part;
+    if (!std::regex_match(word, part, form)) return false;
+    integer digits = 0, power = 1;
+    for (char digit : part[2].str() + part[3].str()) digits = digits * 10 + (digit - '0');
+    long exponent = part[6].length() > 0 ? std::stol(part[6]) : 0;
+    if (part[5] == "-") exponent = -exponent;
+    exponent -= static_cast<long>(part[3].length());
+    for (long i = 0; i < std::labs(exponent); i++) power = power * 10;
+    out = exponent < 0 ? rational(digits, power) : rational(digits * power);
+    if (part[1] == "-") out = -out;
+    return true;
+}
+
+bool oracle_stab_passes_text(const oracle_edge *edges, int count, const char *line) {
+    std::istringstream words(line);
+    std::vector<rational> numbers;
+    for (std::string word; words >> word;) {
+        rational number;
+        if (!parse(word, number)) return false;
+        numbers.push_back(number);
+    }
+    if (numbers.size() != 6) return false;
+    return passes(edges, count, {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]});
 }
 
 // By Gordan's theorem there is an x if and only if no weights >= 0 with sum 1 combine the constraints to 0.

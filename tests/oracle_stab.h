@@ -18,6 +18,9 @@ typedef struct oracle_edge {
 /// Does the line pass all edges?
 bool oracle_stab_passes(const oracle_edge *edges, int count, const double from[3], const double to[3]);
 
+/// The same for a line of six decimals, `x y z x y z`, as they stand; false as well if it is not that.
+bool oracle_stab_passes_text(const oracle_edge *edges, int count, const char *line);
+
 /// Is there an x in R^6, line or not, that passes all edges?
 bool oracle_stab_program(const oracle_edge *edges, int count);
 

@@ -15,6 +15,7 @@
 #include "process.h"
 #include "visibility/check_hidden.h"
 #include "visibility/check_pvs.h"
+#include "visibility/decimal.h"
 #include "visibility/sampler.h"
 #include "witness_graphs.h"
 
@@ -44,7 +45,7 @@ static int enter(void **state) {
     for (int32_t i = 0; i < 6; ++i)
         for (int32_t j = 0; j < 6; ++j) {
             see(&f->pvs, i, j, true);
-            if (i < j) f->list.items[f->list.count++] = (enf_witness){{i, j}, {0, 1, 1}, {6, 1.5, 1}};
+            if (i < j) f->list.items[f->list.count++] = (enf_witness){{i, j}, {0, 1, 1}, {6, 1.5, 1}, NULL};
         }
     *state = f;
     return 0;
@@ -180,6 +181,28 @@ static void sight_lines_are_read(void **state) {
     enf_witnesses_free(&list);
 }
 
+static void long_numbers_are_kept_as_they_stand(void **state) {
+    (void)state;
+    enf_witness_list list;
+    write_text("w.txt", "0 1 0.10000000000000001 12345678901234567 -1.0000000000000000e-300 4 5 6\n"
+                        "0 2  1 2  3 4 5e0 0.123456789012345678 \n");
+    assert_int_equal(enf_witnesses_read(&list, "w.txt", 13, NULL), ENF_OK);
+    assert_null(list.items[0].decimals);
+    const char *at = list.items[1].decimals;
+    assert_non_null(at);
+    assert_true(list.items[1].to[1] == 5 && list.items[1].to[2] == 0.123456789012345678);
+    mpq_t number, wanted;
+    mpq_inits(number, wanted, NULL);
+    int digits;
+    for (int k = 0; k < 6; k++) assert_true(enf_decimal_read(number, &at, &digits));
+    assert_int_equal(digits, 18);
+    mpq_set_str(wanted, "123456789012345678/1000000000000000000", 10);
+    mpq_canonicalize(wanted);
+    assert_true(mpq_equal(number, wanted));
+    mpq_clears(number, wanted, NULL);
+    enf_witnesses_free(&list);
+}
+
 static void bad_sight_lines_are_refused_with_their_line(void **state) {
     (void)state;
     static const char *const bad[][2] = {
@@ -188,6 +211,7 @@ static void bad_sight_lines_are_refused_with_their_line(void **state) {
         {"0 1 1 2 3 4 5 nan\n", "w.txt:1: two points"},
         {"0 1 1 2 3 4 5 1e999\n", "w.txt:1: two points"},
         {"0 1 1 2 3 4 5 6x\n", "w.txt:1: two points"},
+        {"0 1 1 2 0x1p-3 4 5 1.234567890123456789\n", "w.txt:1: numbers of more than 17 digits"},
         {"0 x 1 2 3 4 5 6\n", "w.txt:1: the number of a cell"},
         {"0 1.5 1 2 3 4 5 6\n", "w.txt:1: the number of a cell"},
         {"0 9 1 2 3 4 5 6\n", "w.txt:1: there is no cell 9"},
@@ -317,6 +341,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_missing_pair_is_found_by_other_means, enter, leave),
         cmocka_unit_test_setup_teardown(a_set_of_another_size_is_refused, enter, leave),
         cmocka_unit_test(sight_lines_are_read),
+        cmocka_unit_test(long_numbers_are_kept_as_they_stand),
         cmocka_unit_test(bad_sight_lines_are_refused_with_their_line),
         cmocka_unit_test(the_command_checks_a_portal_file),
         cmocka_unit_test(the_reference_sets_of_levels_are_nearly_right),

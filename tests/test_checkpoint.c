@@ -125,7 +125,8 @@ static void fill_sightings(enf_sightings *sightings) {
     for (int32_t cell = 1; cell < 70; cell += 3) {
         const enf_sighting sighting = {cell, cell + 1000};
         const enf_line line = {{0.1, 2, 3}, {4, 5, -cell}};
-        assert_true(enf_sightings_add(sightings, 0, &sighting, cell % 2 ? &line : NULL));
+        const char *long_line = cell % 4 == 0 ? "1.5 -2 3e-1 4.00000000000000000001 5 6" : NULL;
+        assert_true(enf_sightings_add_long(sightings, 0, &sighting, cell % 2 ? &line : NULL, long_line));
     }
 }
 
@@ -143,6 +144,13 @@ static void sightings_come_back(void **state) {
     assert_int_equal(a->count, b->count);
     assert_memory_equal(a->sightings, b->sightings, (size_t)a->count * sizeof *a->sightings);
     assert_memory_equal(a->lines, b->lines, (size_t)a->count * sizeof *a->lines);
+    int32_t longer = 0;
+    for (int32_t k = 0; k < a->count; k++) {
+        assert_int_equal(a->long_lines[k] != NULL, b->long_lines[k] != NULL);
+        if (a->long_lines[k]) assert_string_equal(a->long_lines[k], b->long_lines[k]);
+        longer += a->long_lines[k] != NULL;
+    }
+    assert_true(longer > 0 && longer < a->count);
     reader = reader_of(&bytes); // all of them are there already
     assert_true(enf_take_sightings(&reader, &back, 0));
     assert_true(reader.failed);
@@ -170,6 +178,7 @@ static void damaged_sightings_do_no_harm(void **state) {
             enf_take_row(&reader, bits.words, 70);
             for (int32_t k = 0; k < back.cells[0].count; k++)
                 assert_in_range(back.cells[0].sightings[k].cell, 1, 69);
+            assert_true(enf_sightings_symmetrise(&back)); // turns long lines
             assert_true(enf_bits_count(bits.words, bits.row_words) <= 70);
             assert_int_equal(enf_bit_next(bits.words, bits.row_words, 70), -1);
             bytes.data[i] ^= (uint8_t)change;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Visible sets: the bits, the text and back, the references of Quake's levels; sight lines as text.
 #include "visibility/pvs.h"
+#include "visibility/sightings.h"
 #include "visibility/witness.h"
 
 #include <setjmp.h>
@@ -144,16 +145,38 @@ static void witnesses_are_sorted_and_written_to_the_last_bit(void **state) {
     (void)state;
     enf_line lines[] = {{{1, 2, 3}, {0.1, -1e-30, 5}}, {{0, 0, 0}, {1, 1, 1}}, {{4, 4, 4}, {5, 5, 5}}};
     int32_t cells[][2] = {{1, 12}, {1, 2}, {0, 40}};
-    enf_visibility visibility = {.witnesses = lines, .witness_cells = cells, .witness_count = 3};
+    char *longer[] = {NULL, "1.0 2.00 3e-1 0.12345678901234567890 5 6", NULL};
+    enf_visibility visibility = {
+        .witnesses = lines, .long_witnesses = longer, .witness_cells = cells, .witness_count = 3};
     char *text = NULL;
     size_t size;
     FILE *out = open_memstream(&text, &size);
     assert_non_null(out);
     assert_int_equal(enf_witnesses_print(&visibility, out, NULL), ENF_OK);
     assert_int_equal(fclose(out), 0);
-    assert_string_equal(text, "0 40 4 4 4 5 5 5\n1 2 0 0 0 1 1 1\n"
+    assert_string_equal(text, "0 40 4 4 4 5 5 5\n1 2 1.0 2.00 3e-1 0.12345678901234567890 5 6\n"
                               "1 12 1 2 3 0.10000000000000001 -1.0000000000000001e-30 5\n");
     free(text);
+}
+
+static void sightings_are_turned_with_their_lines(void **state) {
+    (void)state;
+    enf_sightings sightings;
+    const enf_line line = {{1, 2, 3}, {4, 5, 6}};
+    assert_true(enf_sightings_new(&sightings, 4, true));
+    const enf_sighting three = {3, 2}, two = {2, 1}, one = {1, 1};
+    assert_true(enf_sightings_add(&sightings, 0, &three, &line));
+    assert_true(enf_sightings_add_long(&sightings, 0, &two, NULL, "1 2 3 -4.5 5e-3 66"));
+    assert_true(enf_sightings_add(&sightings, 0, &one, NULL));
+    assert_true(enf_sightings_symmetrise(&sightings) && enf_sightings_symmetrise(&sightings));
+    for (int32_t i = 1; i < 4; i++) {
+        assert_int_equal(sightings.cells[i].count, 1);
+        assert_int_equal(sightings.cells[i].sightings[0].cell, 0);
+    }
+    assert_string_equal(sightings.cells[2].long_lines[0], "-4.5 5e-3 66 1 2 3");
+    assert_true(sightings.cells[3].lines[0].from[0] == 4 && sightings.cells[3].lines[0].to[2] == 3);
+    assert_null(sightings.cells[1].long_lines[0]);
+    enf_sightings_free(&sightings);
 }
 
 static void the_references_of_quake_are_read(void **state) {
@@ -193,6 +216,7 @@ int main(void) {
         cmocka_unit_test(wrong_texts_are_refused_with_their_line),
         cmocka_unit_test(methods_have_names),
         cmocka_unit_test(witnesses_are_sorted_and_written_to_the_last_bit),
+        cmocka_unit_test(sightings_are_turned_with_their_lines),
         cmocka_unit_test(the_references_of_quake_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ladder of visibility: each rung contains the next, results do not depend on threads, on how portals are
 // numbered or on scale, sets are symmetric, and witnesses pass what they should.
+#include "visibility/check_witness.h"
 #include "visibility/visibility.h"
 
 #include "visibility/check_hidden.h"
@@ -114,7 +115,7 @@ static bool sees_through_slit(double width) {
 
 static void slits_are_decided_exactly(void **state) {
     (void)state;
-    for (double width = 1; width > 1e-9; width /= 4) assert_true(sees_through_slit(width));
+    for (double width = 1; width > 1e-12; width /= 4) assert_true(sees_through_slit(width));
     assert_false(sees_through_slit(0));
     assert_false(sees_through_slit(-1e-9));
     assert_false(sees_through_slit(-1e-3));
@@ -174,6 +175,10 @@ static void threads_do_not_matter(void **state) {
             assert_int_equal(one.witness_count, more.witness_count);
             assert_memory_equal(one.witnesses, more.witnesses,
                                 (size_t)one.witness_count * sizeof *one.witnesses);
+            for (int64_t i = 0; i < one.witness_count; i++) {
+                const char *a = one.long_witnesses[i], *b = more.long_witnesses[i];
+                assert_true(a == b || (a && b && strcmp(a, b) == 0));
+            }
             enf_visibility_free(&more);
         }
         enf_visibility_free(&one);
@@ -245,13 +250,50 @@ static void numbers_and_scale_do_not_matter(void **state) {
     enf_portal_graph_free(&graph);
 }
 
-/// Every line passes one portal out of its first cell and one into its last, exactly.
+/// One for each pair; and by the checker's arithmetic, too, every line leads from one cell to the other.
+/// Returns how many lines are not between doubles.
+static int64_t check_witnesses(const enf_portal_graph *graph, const enf_visibility *visibility) {
+    enf_witness_checker checker;
+    int64_t longer = 0;
+    assert_int_equal(2 * visibility->witness_count + graph->cell_count, enf_pvs_pairs(&visibility->pvs));
+    assert_true(enf_witness_checker_make(&checker, graph));
+    for (int64_t i = 0; i < visibility->witness_count; i++) {
+        const int32_t *cell = visibility->witness_cells[i];
+        enf_witness witness = {.cell = {cell[0], cell[1]}, .decimals = visibility->long_witnesses[i]};
+        memcpy(witness.from, visibility->witnesses[i].from, sizeof witness.from);
+        memcpy(witness.to, visibility->witnesses[i].to, sizeof witness.to);
+        if (enf_witness_check(&checker, &witness).fault)
+            fail_msg("cells %" PRId32 " and %" PRId32, cell[0], cell[1]);
+        longer += witness.decimals != NULL;
+    }
+    enf_witness_checker_free(&checker);
+    return longer;
+}
+
+static void each_pair_has_its_witness(void **state) {
+    (void)state;
+    static const char *const levels[] = {"dm4", "e1m7"};
+    for (size_t i = 0; i < sizeof levels / sizeof *levels; i++) {
+        enf_portal_graph graph = read_level(levels[i]);
+        enf_visibility exact = run(&graph, ENF_METHOD_EXACT, 1, true);
+        assert_int_equal(exact.stabs.lines_missing, 0);
+        const int64_t longer = check_witnesses(&graph, &exact);
+        printf("%s: %" PRId64 " lines, %" PRId64 " by way of a longer one, %" PRId64 " longer\n", levels[i],
+               exact.witness_count, exact.stabs.lines_fine, longer);
+        assert_true(i == 0 || longer > 0);
+        enf_visibility_free(&exact);
+        enf_portal_graph_free(&graph);
+    }
+}
+
+/// Every line between doubles passes one portal out of its first cell and one into its last, exactly.
 static void witnesses_leave_and_arrive(void **state) {
     (void)state;
     enf_portal_graph graph = read_level("dm4");
     enf_visibility exact = run(&graph, ENF_METHOD_EXACT, 1, true);
     for (int64_t i = 0; i < exact.witness_count; i++) {
         int32_t from = exact.witness_cells[i][0], to = exact.witness_cells[i][1], out = 0, in = 0;
+        if (exact.long_witnesses[i]) continue;
         for (int32_t k = graph.cell_portal[from]; k < graph.cell_portal[from + 1]; k++)
             out += enf_line_passes(&exact.witnesses[i], &graph, graph.cell_portals[k]);
         for (int32_t k = graph.cell_portal[to]; k < graph.cell_portal[to + 1]; k++)
@@ -329,6 +371,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(each_rung_contains_the_next),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(numbers_and_scale_do_not_matter),
+        cmocka_unit_test(each_pair_has_its_witness),
         cmocka_unit_test(witnesses_leave_and_arrive),
         cmocka_unit_test(what_is_hidden_is_confirmed),
         cmocka_unit_test(agrees_with_another_program),

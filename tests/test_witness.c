@@ -51,6 +51,40 @@ static void a_line_through_a_row_of_rooms_arrives(void **state) {
     enf_portal_graph_free(&graph);
 }
 
+static enf_witness_fault fault_of_decimals(const enf_portal_graph *graph, int32_t i, int32_t j,
+                                           const char *decimals) {
+    enf_witness_checker checker;
+    char text[256];
+    enf_witness witness = {.cell = {i, j}, .decimals = text};
+    snprintf(text, sizeof text, "%s", decimals);
+    assert_true(enf_witness_checker_make(&checker, graph));
+    enf_witness_outcome outcome = enf_witness_check(&checker, &witness);
+    enf_witness_checker_free(&checker);
+    return outcome.fault;
+}
+
+/// A slit from 0 to the least double, 4.9e-324, in y: looked straight through it, only what is between them
+/// passes.
+static void decimals_are_meant_as_they_stand(void **state) {
+    (void)state;
+    enf_portal_graph graph = slit(0x1p-1074);
+    const char *const through[] = {"0 1e-324 1.125 4 1e-324 1.125", "4 4.9e-324 1.125 -80 4.9e-324 1125e-3",
+                                   "-8e1 .0000000001e-314 +1.125 40.e-1 1e-324 1.125"};
+    const char *const beside[] = {"0 0 1.125 4 0 1.125", "0 5e-324 1.125 4 5e-324 1.125",
+                                  "0 -1e-324 1.125 4 -1e-324 1.125", "0 1e-324 0.5 4 1e-324 0.5"};
+    for (size_t k = 0; k < sizeof through / sizeof *through; k++) {
+        assert_int_equal(fault_of_decimals(&graph, 0, 4, through[k]), ENF_WITNESS_HOLDS);
+        assert_int_equal(fault_of_decimals(&graph, 4, 0, through[k]), ENF_WITNESS_HOLDS);
+    }
+    for (size_t k = 0; k < sizeof beside / sizeof *beside; k++)
+        assert_int_equal(fault_of_decimals(&graph, 0, 4, beside[k]), ENF_WITNESS_STUCK);
+    static const char *const none[] = {"0 1 1 0 1.0 1", "0 1 1 4 1", "0 1 1 4 1 x",
+                                       "0 1 1 4 1 1 1", "",          "0 1 1 4 1 1e99999"};
+    for (size_t k = 0; k < sizeof none / sizeof *none; k++)
+        assert_int_equal(fault_of_decimals(&graph, 0, 4, none[k]), ENF_WITNESS_NO_LINE);
+    enf_portal_graph_free(&graph);
+}
+
 static void a_line_into_the_wall_is_stuck(void **state) {
     (void)state;
     enf_portal_graph graph = row_of_rooms(6);
@@ -336,6 +370,7 @@ static void the_sampler_and_the_hidden_check_agree(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_line_through_a_row_of_rooms_arrives),
+        cmocka_unit_test(decimals_are_meant_as_they_stand),
         cmocka_unit_test(a_line_into_the_wall_is_stuck),
         cmocka_unit_test(an_edge_that_is_touched_is_not_passed),
         cmocka_unit_test(lines_that_nearly_touch_are_decided_exactly),

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // On which side of an edge does a line pass? The sign of a 3 by 3 determinant: by doubles with Shewchuk's
 // error bound ("Adaptive precision floating-point arithmetic", 1997), else by whole numbers of any size.
+// Lines in decimals: by whole numbers only.
 #include "visibility/check_witness.h"
 
 #include "base/array.h"
+#include "visibility/decimal.h"
 #include "visibility/whole_number.h"
 
 #include <float.h>
@@ -22,17 +24,32 @@ typedef struct witness_numbers {
     mpz_t origin[3];
     mpz_t vector[VECTORS][3];
     mpz_t sum, product;
+    mpz_t end[2][3], common; ///< of a line in decimals: the points are end / common
 } witness_numbers;
+
+/// A line on its way from -> to.
+typedef struct witness_line {
+    const double *from, *to;
+    bool is_long, turned; ///< it is the line of the numbers' ends; from the second to the first
+} witness_line;
+
+static void each_number(witness_numbers *numbers, void (*act)(mpz_ptr)) {
+    act(numbers->sum);
+    act(numbers->product);
+    act(numbers->common);
+    for (int i = 0; i < 3; i++) {
+        act(numbers->origin[i]);
+        act(numbers->end[0][i]);
+        act(numbers->end[1][i]);
+        for (int k = 0; k < VECTORS; k++) act(numbers->vector[k][i]);
+    }
+}
 
 bool enf_witness_checker_make(enf_witness_checker *checker, const enf_portal_graph *graph) {
     *checker = (enf_witness_checker){.graph = graph};
     witness_numbers *numbers = malloc(sizeof *numbers);
     if (!numbers) return false;
-    mpz_inits(numbers->sum, numbers->product, NULL);
-    for (int i = 0; i < 3; i++) {
-        mpz_init(numbers->origin[i]);
-        for (int k = 0; k < VECTORS; k++) mpz_init(numbers->vector[k][i]);
-    }
+    each_number(numbers, mpz_init);
     checker->numbers = numbers;
     checker->entered = enf_array_zeroed((size_t)graph->cell_count, sizeof *checker->entered);
     checker->queue = enf_array_new((size_t)graph->cell_count, sizeof *checker->queue);
@@ -42,11 +59,7 @@ bool enf_witness_checker_make(enf_witness_checker *checker, const enf_portal_gra
 void enf_witness_checker_free(enf_witness_checker *checker) {
     witness_numbers *numbers = checker->numbers;
     if (!numbers) return;
-    mpz_clears(numbers->sum, numbers->product, NULL);
-    for (int i = 0; i < 3; i++) {
-        mpz_clear(numbers->origin[i]);
-        for (int k = 0; k < VECTORS; k++) mpz_clear(numbers->vector[k][i]);
-    }
+    each_number(numbers, mpz_clear);
     free(numbers);
     free(checker->entered);
     free(checker->queue);
@@ -64,8 +77,8 @@ static void multiply_add(witness_numbers *numbers, int i, int j, int k, int sign
         mpz_sub(numbers->sum, numbers->sum, numbers->product);
 }
 
-static int side_exact(enf_witness_checker *checker, const double *point[4]) {
-    witness_numbers *numbers = checker->numbers;
+/// The vectors in whole multiples of a power of two.
+static void set_vectors(witness_numbers *numbers, const double *point[4]) {
     int unit = DBL_MAX_EXP;
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < 3; i++) {
@@ -79,6 +92,31 @@ static int side_exact(enf_witness_checker *checker, const double *point[4]) {
             mpz_sub(numbers->vector[k][i], numbers->vector[k][i], numbers->origin[i]);
         }
     }
+}
+
+/// The vectors of a line in decimals, in such multiples over the common denominator.
+static void set_long_vectors(witness_numbers *numbers, const double *point[4], bool turned) {
+    int unit = 0;
+    for (int k = 1; k < 3; k++)
+        for (int i = 0; i < 3; i++) {
+            int bit = enf_last_bit(point[k][i]);
+            if (bit < unit) unit = bit;
+        }
+    for (int i = 0; i < 3; i++) {
+        mpz_mul_2exp(numbers->origin[i], numbers->end[turned][i], (mp_bitcnt_t)-unit);
+        mpz_mul_2exp(numbers->vector[2][i], numbers->end[!turned][i], (mp_bitcnt_t)-unit);
+        for (int k = 0; k < 2; k++) {
+            enf_set_whole(numbers->vector[k][i], point[k + 1][i], unit);
+            mpz_mul(numbers->vector[k][i], numbers->vector[k][i], numbers->common);
+        }
+        for (int k = 0; k < VECTORS; k++)
+            mpz_sub(numbers->vector[k][i], numbers->vector[k][i], numbers->origin[i]);
+    }
+}
+
+/// The sign of the vectors' determinant.
+static int side_exact(enf_witness_checker *checker) {
+    witness_numbers *numbers = checker->numbers;
     mpz_set_ui(numbers->sum, 0);
     for (int i = 0; i < 3; i++) {
         multiply_add(numbers, i, (i + 1) % 3, (i + 2) % 3, 1);
@@ -90,8 +128,9 @@ static int side_exact(enf_witness_checker *checker, const double *point[4]) {
 
 /// 1: the line from -> to sees the edge a -> b turn counter-clockwise around it, seen from ahead; -1:
 /// clockwise; 0: they meet, or are parallel.
-static int side(enf_witness_checker *checker, const double from[3], const double to[3], const double a[3],
+static int side(enf_witness_checker *checker, const witness_line *line, const double a[3],
                 const double b[3]) {
+    const double *from = line->from, *to = line->to, *point[4] = {from, a, b, to};
     double u[3], v[3], d[3], sum = 0, size = 0;
     for (int i = 0; i < 3; i++) {
         u[i] = a[i] - from[i];
@@ -104,32 +143,36 @@ static int side(enf_witness_checker *checker, const double from[3], const double
         sum += d[i] * (left - right);
         size += fabs(d[i]) * (fabs(left) + fabs(right));
     }
-    if (size > side_least && size < DBL_MAX && fabs(sum) > side_error * size) {
+    if (!line->is_long && size > side_least && size < DBL_MAX && fabs(sum) > side_error * size) {
         checker->sides_near++;
         return sum > 0 ? 1 : -1;
     }
-    return side_exact(checker, (const double *[4]){from, a, b, to});
+    if (line->is_long)
+        set_long_vectors(checker->numbers, point, line->turned);
+    else
+        set_vectors(checker->numbers, point);
+    return side_exact(checker);
 }
 
 // ---------------------------------------------------------------------------------------------- walk
 
-static bool passes(enf_witness_checker *checker, int32_t portal, const double from[3], const double to[3]) {
+static bool passes(enf_witness_checker *checker, int32_t portal, const witness_line *line) {
     const enf_portal_graph *graph = checker->graph;
     int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
     int wanted = portal & 1 ? -1 : 1;
     for (int32_t at = end - 1, next = first; next < end; at = next++)
-        if (side(checker, from, to, graph->corners[at], graph->corners[next]) != wanted) return false;
+        if (side(checker, line, graph->corners[at], graph->corners[next]) != wanted) return false;
     return true;
 }
 
 /// Queues the cells behind the portals out of a cell that the line passes; returns the queue's new length.
-static int32_t go_on(enf_witness_checker *checker, int32_t cell, const double from[3], const double to[3],
-                     int32_t count, enf_witness_outcome *outcome) {
+static int32_t go_on(enf_witness_checker *checker, int32_t cell, const witness_line *line, int32_t count,
+                     enf_witness_outcome *outcome) {
     const enf_portal_graph *graph = checker->graph;
     int32_t before = outcome->steps;
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
         int32_t portal = graph->cell_portals[k], next = enf_portal_to(graph, portal);
-        if (!passes(checker, portal, from, to)) continue;
+        if (!passes(checker, portal, line)) continue;
         outcome->steps++;
         if (checker->entered[next] == checker->walks) continue;
         checker->entered[next] = checker->walks;
@@ -139,8 +182,8 @@ static int32_t go_on(enf_witness_checker *checker, int32_t cell, const double fr
     return count;
 }
 
-static enf_witness_outcome walk(enf_witness_checker *checker, const int32_t cell[2], const double from[3],
-                                const double to[3]) {
+static enf_witness_outcome walk(enf_witness_checker *checker, const int32_t cell[2],
+                                const witness_line *line) {
     enf_witness_outcome outcome = {.fault = ENF_WITNESS_STUCK, .cell = cell[0]};
     int32_t count = 1;
     checker->walks++;
@@ -151,9 +194,29 @@ static enf_witness_outcome walk(enf_witness_checker *checker, const int32_t cell
         if (outcome.cell == cell[1])
             outcome.fault = ENF_WITNESS_HOLDS;
         else
-            count = go_on(checker, outcome.cell, from, to, count, &outcome);
+            count = go_on(checker, outcome.cell, line, count, &outcome);
     }
     return outcome;
+}
+
+/// The ends in whole numbers over a common denominator. False if the text is not six numbers, or the ends are
+/// one.
+static bool read_ends(witness_numbers *numbers, const char *text) {
+    mpq_t number[6];
+    bool good = true, differ = false;
+    int digits;
+    for (int k = 0; k < 6; k++) mpq_init(number[k]);
+    for (int k = 0; good && k < 6; k++) good = enf_decimal_read(number[k], &text, &digits);
+    mpz_set_ui(numbers->common, 1);
+    for (int k = 0; k < 6; k++) mpz_lcm(numbers->common, numbers->common, mpq_denref(number[k]));
+    for (int k = 0; k < 6; k++) {
+        mpz_ptr end = numbers->end[k / 3][k % 3];
+        mpz_divexact(end, numbers->common, mpq_denref(number[k]));
+        mpz_mul(end, end, mpq_numref(number[k]));
+        differ = differ || (k >= 3 && mpz_cmp(end, numbers->end[0][k - 3]) != 0);
+    }
+    for (int k = 0; k < 6; k++) mpq_clear(number[k]);
+    return good && differ && *text == '\0';
 }
 
 static enf_witness_fault check_words(const enf_portal_graph *graph, const enf_witness *witness) {
@@ -164,15 +227,20 @@ static enf_witness_fault check_words(const enf_portal_graph *graph, const enf_wi
     }
     for (int i = 0; i < 2; i++)
         if (witness->cell[i] < 0 || witness->cell[i] >= graph->cell_count) return ENF_WITNESS_NO_CELL;
-    return differ ? ENF_WITNESS_HOLDS : ENF_WITNESS_NO_LINE;
+    return differ || witness->decimals ? ENF_WITNESS_HOLDS : ENF_WITNESS_NO_LINE;
 }
 
 enf_witness_outcome enf_witness_check(enf_witness_checker *checker, const enf_witness *witness) {
     enf_witness_outcome outcome = {.fault = check_words(checker->graph, witness), .cell = witness->cell[0]};
+    if (!outcome.fault && witness->decimals && !read_ends(checker->numbers, witness->decimals))
+        outcome.fault = ENF_WITNESS_NO_LINE;
     if (outcome.fault) return outcome;
-    outcome = walk(checker, witness->cell, witness->from, witness->to);
+    const bool is_long = witness->decimals != NULL;
+    const witness_line there = {witness->from, witness->to, is_long, false};
+    outcome = walk(checker, witness->cell, &there);
     if (outcome.fault == ENF_WITNESS_HOLDS) return outcome;
-    enf_witness_outcome back = walk(checker, witness->cell, witness->to, witness->from);
+    const witness_line turned = {witness->to, witness->from, is_long, true};
+    enf_witness_outcome back = walk(checker, witness->cell, &turned);
     bool further = back.fault == ENF_WITNESS_HOLDS || back.steps > outcome.steps;
     return further ? back : outcome;
 }

@@ -11,12 +11,13 @@
 typedef struct enf_witness {
     int32_t cell[2];
     double from[3], to[3];
+    char *decimals; ///< not null: the same six numbers, `x y z x y z`, that are meant as they stand there
 } enf_witness;
 
 typedef enum enf_witness_fault {
     ENF_WITNESS_HOLDS = 0,
     ENF_WITNESS_NO_CELL, ///< a cell's number is out of range
-    ENF_WITNESS_NO_LINE, ///< the two points are one, or not finite
+    ENF_WITNESS_NO_LINE, ///< the two points are one, or not finite, or the decimals are not six numbers
     ENF_WITNESS_STUCK,   ///< the line does not come to the other cell
 } enf_witness_fault;
 

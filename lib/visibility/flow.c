@@ -49,7 +49,7 @@ enf_flow *enf_flow_new(const enf_flow_options *options) {
     if (!flow) return NULL;
     flow->options = *options;
     flow->words = options->beams->row_words;
-    flow->wanted = enf_array_new(flow->words, sizeof *flow->wanted);
+    flow->wanted = enf_array_zeroed(flow->words, sizeof *flow->wanted);
     flow->stabber = enf_stabber_new(options->pluecker);
     if (flow->wanted && flow->stabber && make_room(flow, 16)) return flow;
     enf_flow_free(flow);
@@ -130,16 +130,16 @@ static enf_status decide(enf_flow *flow, int32_t depth, bool *passes, enf_error 
     enf_stab stab;
     for (int32_t i = 0; i <= depth; i++) flow->sequence[i] = flow->levels[i].portal;
     enf_window_middle(&flow->from, hint.from);
-    enf_window_middle(&flow->levels[depth].window, hint.to);
-    enf_status status = (flow->options.exact ? enf_stab_exact : enf_stab_lp)(flow->stabber, flow->sequence,
-                                                                             depth + 1, &hint, &stab, error);
+    if (depth > 0) enf_window_middle(&flow->levels[depth].window, hint.to);
+    enf_status status = (flow->options.exact ? enf_stab_exact : enf_stab_lp)(
+        flow->stabber, flow->sequence, depth + 1, depth > 0 ? &hint : NULL, &stab, error);
     if (status) return status;
     *passes = stab.answer != ENF_STAB_HIDDEN;
     if (!*passes) return ENF_OK;
     int32_t cell = enf_portal_to(flow->options.shapes->graph, flow->levels[depth].portal);
     enf_bit_clear(flow->targets, cell);
     drop_wanted(flow, cell);
-    flow->options.seen(flow->options.user, flow->cell, cell, stab.has_line ? &stab.line : NULL, depth + 1);
+    flow->options.seen(flow->options.user, flow->cell, cell, &stab, depth + 1);
     return ENF_OK;
 }
 
@@ -179,11 +179,16 @@ static bool is_late(enf_flow *flow) {
 static enf_status search(enf_flow *flow, int32_t source, enf_error *error) {
     const enf_portal_graph *graph = flow->options.shapes->graph;
     const uint64_t *row = enf_bits_row(flow->options.beams, source);
-    if (!find_wanted(flow, row)) return ENF_OK;
-    memcpy(mask_of(flow, 0), row, flow->words * sizeof *row);
-    enf_shape_window(flow->options.shapes, source, &flow->from);
     level *first = &flow->levels[0];
     first->portal = source;
+    enf_shape_window(flow->options.shapes, source, &flow->from);
+    if (enf_bit_get(flow->targets, enf_portal_to(graph, source))) {
+        bool passes;
+        enf_status status = decide(flow, 0, &passes, error);
+        if (status) return status;
+    }
+    if (!find_wanted(flow, row)) return ENF_OK;
+    memcpy(mask_of(flow, 0), row, flow->words * sizeof *row);
     first->next = graph->cell_portal[enf_portal_to(graph, source)];
     first->ready = true;
     enf_separators_begin(&first->separators, flow->options.shapes, source);

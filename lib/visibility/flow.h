@@ -13,8 +13,9 @@
 #include "visibility/shapes.h"
 #include "visibility/stab.h"
 
-/// Told of each cell that is seen: `count` portals lead to it, and `line`, if not null, passes them all.
-typedef void enf_flow_seen(void *user, int32_t from, int32_t to, const enf_line *line, int32_t count);
+/// Told of each cell that is seen: `count` portals lead to it, and the line of `stab`, if it has one, passes
+/// them all.
+typedef void enf_flow_seen(void *user, int32_t from, int32_t to, const enf_stab *stab, int32_t count);
 
 typedef struct enf_flow_options {
     const enf_shapes *shapes;

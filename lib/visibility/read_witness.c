@@ -3,7 +3,9 @@
 
 #include "base/array.h"
 #include "build/read.h"
+#include "visibility/decimal.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -35,6 +37,38 @@ static enf_status read_point(enf_source *source, double point[3], enf_error *err
     return ENF_OK;
 }
 
+/// Has one of the words from here to the cursor more digits than it takes to tell doubles apart?
+static bool has_long_number(const enf_source *source, const char *at) {
+    int digits = 0;
+    bool counts = true;
+    for (; at < source->at; at++) {
+        if (*at == ' ' || *at == '\t')
+            digits = 0, counts = true;
+        else if (*at == 'e' || *at == 'E')
+            counts = false;
+        else if (counts && *at >= '0' && *at <= '9')
+            digits += digits > 0 || *at != '0';
+        if (digits > DBL_DECIMAL_DIG) return true;
+    }
+    return false;
+}
+
+/// Keeps the decimals from `at` to the cursor; they must be plain ones.
+static enf_status keep_decimals(enf_source *source, const char *at, enf_witness *witness, enf_error *error) {
+    mpq_t number;
+    int digits;
+    witness->decimals = strndup(at, (size_t)(source->at - at));
+    if (!witness->decimals) return enf_fail_memory(error, "the sight lines");
+    const char *rest = witness->decimals;
+    mpq_init(number);
+    while (*rest && enf_decimal_read(number, &rest, &digits)) continue;
+    mpq_clear(number);
+    if (*rest == '\0') return ENF_OK;
+    return enf_source_fail(source, error,
+                           "numbers of more than 17 digits, and those beside them, should be "
+                           "decimals; make the file again");
+}
+
 static bool ascends(const enf_witness *before, const enf_witness *witness) {
     if (before->cell[0] != witness->cell[0]) return before->cell[0] < witness->cell[0];
     return before->cell[1] < witness->cell[1];
@@ -45,17 +79,20 @@ static enf_status read_line(enf_witness_list *list, enf_source *source, int32_t 
     if (!enf_array_reserve(list->items, list->capacity, list->count + 1))
         return enf_fail_memory(error, "the sight lines");
     enf_witness *witness = &list->items[list->count];
+    *witness = (enf_witness){.decimals = NULL};
+    list->count++;
     enf_status status = read_cells(source, witness->cell, cell_count, error);
+    const char *numbers = source->at;
     if (!status) status = read_point(source, witness->from, error);
     if (!status) status = read_point(source, witness->to, error);
+    if (!status && has_long_number(source, numbers)) status = keep_decimals(source, numbers, witness, error);
     if (status) return status;
     if (enf_source_more(source))
         return enf_source_fail(source, error,
                                "there is something behind the two points; make the file again");
-    if (list->count > 0 && !ascends(witness - 1, witness))
+    if (list->count > 1 && !ascends(witness - 1, witness))
         return enf_source_fail(source, error,
                                "the pairs of cells do not ascend; sort the file by both numbers");
-    list->count++;
     return ENF_OK;
 }
 
@@ -74,6 +111,7 @@ enf_status enf_witnesses_read(enf_witness_list *list, const char *path, int32_t 
 }
 
 void enf_witnesses_free(enf_witness_list *list) {
+    for (size_t k = 0; k < list->count; k++) free(list->items[k].decimals);
     free(list->items);
     memset(list, 0, sizeof *list);
 }

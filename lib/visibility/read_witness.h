@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sight lines from their text: a line `i j x y z x y z` for each, two cells, i < j, and two points; sorted by
-// i and j, no pair twice.
+// i and j, no pair twice. Coordinates are rounded to doubles, unless one of a line's six has more digits than
+// 17: then all six are meant as they stand.
 #ifndef ENF_VISIBILITY_READ_WITNESS_H
 #define ENF_VISIBILITY_READ_WITNESS_H
 

@@ -148,8 +148,7 @@ enf_status enf_sampler_run(enf_sampler *sampler, double seconds, uint64_t rays, 
 bool enf_sampler_witness(const enf_sampler *sampler, int32_t i, int32_t j, enf_witness *witness) {
     int32_t number = sampler->pair_line[enf_sampler_pair(i, j)];
     if (number < 0) return false;
-    witness->cell[0] = i;
-    witness->cell[1] = j;
+    *witness = (enf_witness){.cell = {i, j}};
     memcpy(witness->from, sampler->lines[number].point[0], sizeof witness->from);
     memcpy(witness->to, sampler->lines[number].point[1], sizeof witness->to);
     return true;

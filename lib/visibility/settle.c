@@ -99,10 +99,12 @@ static void find_cost(settling *settling) {
 
 // ---------------------------------------------------------------------------------------------- jobs
 
-static void note(void *user, int32_t from, int32_t to, const enf_line *line, int32_t portals) {
+static void note(void *user, int32_t from, int32_t to, const enf_stab *stab, int32_t portals) {
     settler *settler = user;
     const enf_sighting sighting = {to, portals};
-    if (!enf_sightings_add(settler->sightings, from, &sighting, line)) settler->failed = true;
+    const enf_line *line = stab->has_line ? &stab->line : NULL;
+    if (!enf_sightings_add_long(settler->sightings, from, &sighting, line, stab->long_line))
+        settler->failed = true;
 }
 
 static void add_counts(settle_result *sum, const settle_result *counts, int sign) {

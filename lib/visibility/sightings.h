@@ -14,9 +14,10 @@ typedef struct enf_sighting {
 /// What one cell was seen to see. Only one thread at a time adds to a cell.
 typedef struct enf_cell_sightings {
     int32_t count;
-    size_t capacity, line_capacity;
+    size_t capacity, line_capacity, long_capacity;
     enf_sighting *sightings;
-    enf_line *lines; ///< one each, if lines are kept; from == to: there is none
+    enf_line *lines;   ///< one each, if lines are kept; from == to: there is none between doubles
+    char **long_lines; ///< one each, if lines are kept; as in stab.h, or null. Owned
 } enf_cell_sightings;
 
 typedef struct enf_sightings {
@@ -32,6 +33,10 @@ void enf_sightings_free(enf_sightings *sightings);
 /// Adds a sighting that is not there yet; `line` may be null. False without memory.
 bool enf_sightings_add(enf_sightings *sightings, int32_t cell, const enf_sighting *sighting,
                        const enf_line *line);
+
+/// The same with a line in more digits, which is copied; it may be null, too.
+bool enf_sightings_add_long(enf_sightings *sightings, int32_t cell, const enf_sighting *sighting,
+                            const enf_line *line, const char *long_line);
 
 /// Who was seen sees, too: adds what is there one way only the other way round. False without memory.
 bool enf_sightings_symmetrise(enf_sightings *sightings);

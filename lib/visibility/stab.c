@@ -30,6 +30,7 @@ void enf_stabber_free(enf_stabber *stabber) {
     free(stabber->sources);
     free(stabber->vectors);
     free(stabber->products);
+    free(stabber->long_line);
     free(stabber);
 }
 
@@ -126,7 +127,8 @@ enf_status enf_stab_exact(enf_stabber *stabber, const int32_t *sequence, int32_t
     if (!meets) return ENF_OK;
     if (enf_stabber_line(stabber, stabber->hull.x, &line) && enf_stabber_passes(stabber, &line))
         set_line(stab, &line);
-    else
-        stabber->counts.lines_missing++;
-    return ENF_OK;
+    else if (stabber->has_meeting)
+        status = enf_stabber_refine(stabber, stab, error);
+    stabber->counts.lines_missing += !stab->has_line && !stab->long_line;
+    return status;
 }

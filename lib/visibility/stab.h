@@ -18,8 +18,12 @@ typedef enum enf_stab_answer {
 
 typedef struct enf_stab {
     enf_stab_answer answer;
-    bool has_line; ///< never if HIDDEN; not always if VISIBLE, where lines may exist between all doubles only
+    bool has_line; ///< a line between doubles, if VISIBLE
     enf_line line; ///< if has_line: enf_line_passes says yes for all portals
+
+    /// If VISIBLE without a line between doubles: one between points in more digits, `x y z x y z`, as exact
+    /// decimals; it passes all portals. Owned by the stabber, until its next call. Null otherwise.
+    const char *long_line;
 } enf_stab;
 
 typedef struct enf_stab_counts {
@@ -33,7 +37,9 @@ typedef struct enf_stab_counts {
     int64_t quadrics;       ///< decisions about the cone and the quadric in whole numbers
     int64_t quadrics_hidden;
     int64_t undecided;     ///< of those, cones of more than 512 sides, taken for visible
-    int64_t lines_missing; ///< visible, but no line of doubles was found
+    int64_t lines_fine;    ///< lines between doubles that were found from a line in more digits
+    int64_t lines_long;    ///< lines in more digits than doubles have
+    int64_t lines_missing; ///< visible, but no line was found: only if undecided
 } enf_stab_counts;
 
 /// Scratch memory and counters of one thread.
@@ -50,7 +56,7 @@ const enf_stab_counts *enf_stabber_counts(const enf_stabber *stabber);
 enf_status enf_stab_lp(enf_stabber *stabber, const int32_t *sequence, int32_t count, const enf_line *hint,
                        enf_stab *stab, enf_error *error);
 
-/// Real lines: HIDDEN or VISIBLE.
+/// Real lines: HIDDEN, or VISIBLE with a line.
 enf_status enf_stab_exact(enf_stabber *stabber, const int32_t *sequence, int32_t count, const enf_line *hint,
                           enf_stab *stab, enf_error *error);
 

@@ -161,7 +161,7 @@ enf_status enf_stabber_quadric(enf_stabber *stabber, bool *meets, enf_error *err
     mpz_mul(q->a, stabber->point[0], stabber->point[3]);
     for (int i = 1; i < 3; i++) mpz_addmul(q->a, stabber->point[i], stabber->point[3 + i]);
     q->sign = mpz_sgn(q->a);
-    *meets = true;
+    *meets = stabber->has_meeting = true;
     if (q->sign == 0) {
         unset_point(stabber, stabber->point, stabber->hull.x);
         return ENF_OK;
@@ -171,5 +171,6 @@ enf_status enf_stabber_quadric(enf_stabber *stabber, bool *meets, enf_error *err
     if (found == TOO_MANY_SIDES) stabber->counts.undecided++;
     if (found == MEETS) set_meeting(stabber, q);
     *meets = found != MISSES;
+    stabber->has_meeting = found == MEETS;
     return ENF_OK;
 }

@@ -34,6 +34,8 @@ struct enf_stabber {
     enf_whole_vector point; ///< a solution of the whole-number program
     bool point_is_whole;    ///< the solution is `point`, not hull.x
     enf_quadric quadric;
+    bool has_meeting; ///< `point` and the quadric's witness, in the closed cone, have a line between them
+    char *long_line;
 };
 
 /// Each computed vector, about as long as 1, is off by less than 2^-48: a few roundings of coordinates
@@ -85,7 +87,11 @@ bool enf_stabber_passes(const enf_stabber *stabber, const enf_line *line);
 
 // ---- stab_cone.c
 /// Exactly, from the strict solution: does the open cone meet the quadric? Leaves in hull.x something next to
-/// where it does.
+/// where it does; has_meeting, unless that was not decided.
 enf_status enf_stabber_quadric(enf_stabber *stabber, bool *meets, enf_error *error);
+
+// ---- stab_refine.c
+/// From the meeting of cone and quadric to the line of *stab: between doubles, or else a long one.
+enf_status enf_stabber_refine(enf_stabber *stabber, enf_stab *stab, enf_error *error);
 
 #endif

@@ -107,7 +107,7 @@ static void set_seen(const enf_sightings *sightings, enf_pvs *pvs) {
             enf_pvs_set(pvs, i, sightings->cells[i].sightings[k].cell);
 }
 
-/// Neighbours see each other even where no line could be walked.
+/// Neighbours see each other even where no line passes the portal between them.
 static bool add_neighbours(enf_sightings *sightings, const enf_portal_graph *graph) {
     for (int32_t p = 0; p < 2 * graph->opening_count; p++) {
         int32_t from = enf_portal_from(graph, p);
@@ -148,8 +148,10 @@ static enf_status cast(ladder *ladder, enf_error *error) {
     enf_bits_free(&ladder->facing);
     if (status) return status;
     set_cells(ladder->graph, &ladder->cast.beams, &ladder->visibility->pvs);
-    if (wants_lines &&
-        !(enf_sightings_symmetrise(&ladder->sightings) && add_neighbours(&ladder->sightings, ladder->graph)))
+    if (wants_lines && !enf_sightings_symmetrise(&ladder->sightings))
+        return enf_fail_memory(error, "the sight lines");
+    if (options->method == ENF_METHOD_HOURGLASS && wants_lines &&
+        !add_neighbours(&ladder->sightings, ladder->graph))
         return enf_fail_memory(error, "the sight lines");
     return ENF_OK;
 }
@@ -166,7 +168,8 @@ static enf_status settle(ladder *ladder, enf_error *error) {
                                  .cells = &cells,
                                  .exact = ladder->options->method == ENF_METHOD_EXACT};
     enf_status status = enf_settle_run(&settlement, &ladder->sightings, place, error);
-    if (!status && !enf_sightings_symmetrise(&ladder->sightings))
+    if (!status &&
+        !(enf_sightings_symmetrise(&ladder->sightings) && add_neighbours(&ladder->sightings, ladder->graph)))
         status = enf_fail_memory(error, "the sight lines");
     if (status) return status;
     memset(pvs->rows, 0, (size_t)pvs->cell_count * pvs->row_words * sizeof *pvs->rows);
@@ -182,7 +185,7 @@ static enf_status settle(ladder *ladder, enf_error *error) {
 /// Takes the witnesses of pairs i < j, and counts the portals on the way.
 static enf_status take_witnesses(ladder *ladder, enf_error *error) {
     enf_visibility *visibility = ladder->visibility;
-    size_t capacity = 0, cell_capacity = 0;
+    size_t capacity = 0, long_capacity = 0, cell_capacity = 0;
     for (int32_t i = 0; i < ladder->sightings.seen.row_count; i++) {
         const enf_cell_sightings *of = &ladder->sightings.cells[i];
         for (int32_t k = 0; k < of->count; k++) {
@@ -193,11 +196,14 @@ static enf_status take_witnesses(ladder *ladder, enf_error *error) {
             if (!ladder->sightings.keep_lines) continue;
             size_t count = (size_t)visibility->witness_count + 1;
             const enf_line *line = &of->lines[k];
-            if (memcmp(line->from, line->to, sizeof line->from) == 0) continue;
+            if (!of->long_lines[k] && memcmp(line->from, line->to, sizeof line->from) == 0) continue;
             if (!enf_array_reserve(visibility->witnesses, capacity, count) ||
+                !enf_array_reserve(visibility->long_witnesses, long_capacity, count) ||
                 !enf_array_reserve(visibility->witness_cells, cell_capacity, count))
                 return enf_fail_memory(error, "the witnesses");
             visibility->witnesses[count - 1] = *line;
+            visibility->long_witnesses[count - 1] = of->long_lines[k];
+            of->long_lines[k] = NULL;
             visibility->witness_cells[count - 1][0] = i;
             visibility->witness_cells[count - 1][1] = of->sightings[k].cell;
             visibility->witness_count++;
@@ -255,6 +261,9 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
 
 void enf_visibility_free(enf_visibility *visibility) {
     enf_pvs_free(&visibility->pvs);
+    for (int64_t i = 0; visibility->long_witnesses && i < visibility->witness_count; i++)
+        free(visibility->long_witnesses[i]);
+    free(visibility->long_witnesses);
     free(visibility->witnesses);
     free(visibility->witness_cells);
     *visibility = (enf_visibility){0};

@@ -50,6 +50,7 @@ typedef struct enf_visibility {
 
     // If wanted: one for each unordered pair of cells that was proved visible.
     enf_line *witnesses;         ///< witness_count; from the first cell of the pair to the second
+    char **long_witnesses;       ///< witness_count; not null: the line in more digits (stab.h) instead
     int32_t (*witness_cells)[2]; ///< witness_count; i < j
     int64_t witness_count;
 

@@ -18,10 +18,15 @@ static int compare(const void *a, const void *b) {
     return x->witness < y->witness ? -1 : x->witness > y->witness;
 }
 
-static void print_line(const entry *entry, const enf_line *line, FILE *out) {
+static void print_line(const enf_visibility *visibility, const entry *entry, FILE *out) {
+    const enf_line *line = &visibility->witnesses[entry->witness];
+    const char *long_line = visibility->long_witnesses ? visibility->long_witnesses[entry->witness] : NULL;
     const double *from = line->from, *to = line->to;
-    fprintf(out, "%" PRId32 " %" PRId32 " %.17g %.17g %.17g %.17g %.17g %.17g\n", entry->cells[0],
-            entry->cells[1], from[0], from[1], from[2], to[0], to[1], to[2]);
+    fprintf(out, "%" PRId32 " %" PRId32 " ", entry->cells[0], entry->cells[1]);
+    if (long_line)
+        fprintf(out, "%s\n", long_line);
+    else
+        fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g\n", from[0], from[1], from[2], to[0], to[1], to[2]);
 }
 
 enf_status enf_witnesses_print(const enf_visibility *visibility, FILE *out, enf_error *error) {
@@ -33,8 +38,7 @@ enf_status enf_witnesses_print(const enf_visibility *visibility, FILE *out, enf_
         entries[i] = (entry){{cells[0], cells[1]}, (int64_t)i};
     }
     qsort(entries, count, sizeof *entries, compare);
-    for (size_t i = 0; i < count && !ferror(out); i++)
-        print_line(&entries[i], &visibility->witnesses[entries[i].witness], out);
+    for (size_t i = 0; i < count && !ferror(out); i++) print_line(visibility, &entries[i], out);
     free(entries);
     return ENF_OK;
 }
