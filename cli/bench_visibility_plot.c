@@ -73,7 +73,7 @@ void cli_visibility_plot(const cli_visibility_measure measures[ENF_METHOD_COUNT]
         double error = find_share(measures, m), x = page_x(&axes, measures[m].seconds),
                y = page_y(&axes, error);
         fprintf(out, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"6\" fill=\"#e4572e\"/>\n", x, y);
-        fprintf(out, "<text x=\"%.1f\" y=\"%.1f\">%s: %.3g s, %.2g %%</text>\n", x + 11, y - 7,
+        fprintf(out, "<text x=\"%.1f\" y=\"%.1f\">%s: %.3g s, %.3g %%</text>\n", x + 11, y - 7,
                 enf_method_name((enf_method)m), measures[m].seconds, 100 * error);
     }
     fputs("</svg>\n", out);

@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "visibility/decimal.h"
 #include "visibility/whole_number.h"
+#include "visibility/witness_order.h"
 
 #include <float.h>
 #include <math.h>
@@ -19,6 +20,8 @@ enum { VECTORS = 3 }; // from the line's first point to: the edge's ends, the li
 static const double side_error = 7.78e-16;
 /// Below this, products may have lost digits by underflow.
 static const double side_least = 1e-250;
+/// Of the way between a line's points: portals this far apart along a line are in order for sure.
+static const double order_least = 1e-6;
 
 typedef struct witness_numbers {
     mpz_t origin[3];
@@ -53,7 +56,8 @@ bool enf_witness_checker_make(enf_witness_checker *checker, const enf_portal_gra
     checker->numbers = numbers;
     checker->entered = enf_array_zeroed((size_t)graph->cell_count, sizeof *checker->entered);
     checker->queue = enf_array_new((size_t)graph->cell_count, sizeof *checker->queue);
-    return checker->entered && checker->queue;
+    checker->entered_by = enf_array_new((size_t)graph->cell_count, sizeof *checker->entered_by);
+    return checker->entered && checker->queue && checker->entered_by;
 }
 
 void enf_witness_checker_free(enf_witness_checker *checker) {
@@ -63,6 +67,7 @@ void enf_witness_checker_free(enf_witness_checker *checker) {
     free(numbers);
     free(checker->entered);
     free(checker->queue);
+    free(checker->entered_by);
     *checker = (enf_witness_checker){.graph = NULL};
 }
 
@@ -154,6 +159,49 @@ static int side(enf_witness_checker *checker, const witness_line *line, const do
     return side_exact(checker);
 }
 
+// ---------------------------------------------------------------------------------------------- order
+
+/// The share of the way from -> to at which the line comes to the portal, about.
+static double find_share(const enf_portal_graph *graph, int32_t portal, const witness_line *line) {
+    int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
+    const double *origin = graph->corners[first];
+    double normal[3] = {0}, height = 0, fall = 0;
+    for (int32_t c = first + 1; c + 1 < end; c++)
+        for (int i = 0; i < 3; i++) {
+            int j = (i + 1) % 3, k = (i + 2) % 3;
+            const double *a = graph->corners[c], *b = graph->corners[c + 1];
+            normal[i] += (a[j] - origin[j]) * (b[k] - origin[k]) - (a[k] - origin[k]) * (b[j] - origin[j]);
+        }
+    for (int i = 0; i < 3; i++) {
+        height += normal[i] * (line->from[i] - origin[i]);
+        fall += normal[i] * (line->from[i] - line->to[i]);
+    }
+    return height / fall;
+}
+
+/// Does the line come to the one portal before the other? By doubles if that is clear.
+static bool in_order(enf_witness_checker *checker, int32_t first, int32_t second, const witness_line *line) {
+    double before = find_share(checker->graph, first, line), after = find_share(checker->graph, second, line);
+    if (after - before > order_least * (1 + fabs(before) + fabs(after))) return true;
+    witness_numbers *numbers = checker->numbers;
+    mpq_t end[2][3];
+    for (int e = 0; e < 2; e++)
+        for (int i = 0; i < 3; i++) {
+            mpq_init(end[e][i]);
+            if (line->is_long) {
+                mpz_set(mpq_numref(end[e][i]), numbers->end[line->turned ? !e : e][i]);
+                mpz_set(mpq_denref(end[e][i]), numbers->common);
+                mpq_canonicalize(end[e][i]);
+            } else {
+                mpq_set_d(end[e][i], e ? line->to[i] : line->from[i]);
+            }
+        }
+    bool good = enf_witness_in_order(checker->graph, end[0], end[1], first, second);
+    for (int e = 0; e < 2; e++)
+        for (int i = 0; i < 3; i++) mpq_clear(end[e][i]);
+    return good;
+}
+
 // ---------------------------------------------------------------------------------------------- walk
 
 static bool passes(enf_witness_checker *checker, int32_t portal, const witness_line *line) {
@@ -169,13 +217,15 @@ static bool passes(enf_witness_checker *checker, int32_t portal, const witness_l
 static int32_t go_on(enf_witness_checker *checker, int32_t cell, const witness_line *line, int32_t count,
                      enf_witness_outcome *outcome) {
     const enf_portal_graph *graph = checker->graph;
-    int32_t before = outcome->steps;
+    int32_t before = outcome->steps, by = checker->entered_by[cell];
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
         int32_t portal = graph->cell_portals[k], next = enf_portal_to(graph, portal);
         if (!passes(checker, portal, line)) continue;
+        if (by >= 0 && !in_order(checker, by, portal, line)) continue;
         outcome->steps++;
         if (checker->entered[next] == checker->walks) continue;
         checker->entered[next] = checker->walks;
+        checker->entered_by[next] = portal;
         checker->queue[count++] = next;
     }
     outcome->forked |= outcome->steps > before + 1;
@@ -188,6 +238,7 @@ static enf_witness_outcome walk(enf_witness_checker *checker, const int32_t cell
     int32_t count = 1;
     checker->walks++;
     checker->entered[cell[0]] = checker->walks;
+    checker->entered_by[cell[0]] = -1;
     checker->queue[0] = cell[0];
     for (int32_t at = 0; at < count && outcome.fault; at++) {
         outcome.cell = checker->queue[at];

@@ -31,9 +31,10 @@ typedef struct enf_witness_outcome {
 
 typedef struct enf_witness_checker {
     const enf_portal_graph *graph;
-    void *numbers;    ///< scratch of the exact arithmetic
-    int32_t *entered; ///< of each cell: the last walk that entered it
-    int32_t *queue;   ///< the cells of a walk
+    void *numbers;       ///< scratch of the exact arithmetic
+    int32_t *entered;    ///< of each cell: the last walk that entered it
+    int32_t *entered_by; ///< by which portal then; -1: the walk began there
+    int32_t *queue;      ///< the cells of a walk
     int32_t walks;
     uint64_t sides_near, sides_exact; ///< sides decided by doubles, and by whole numbers
 } enf_witness_checker;
@@ -42,8 +43,9 @@ typedef struct enf_witness_checker {
 bool enf_witness_checker_make(enf_witness_checker *checker, const enf_portal_graph *graph);
 void enf_witness_checker_free(enf_witness_checker *checker);
 
-/// Walks the line from cell[0] through the portals that it passes strictly, until it comes to cell[1]; if
-/// that fails, the same against the line. The outcome is that of the walk that came further.
+/// Walks the line from cell[0] through the portals that it passes strictly, one after the other, until it
+/// comes to cell[1]; if that fails, the same against the line. The outcome is that of the walk that came
+/// further.
 enf_witness_outcome enf_witness_check(enf_witness_checker *checker, const enf_witness *witness);
 
 /// "the line passes no portal out of cell 5, after 3 portals" and the like, for messages.

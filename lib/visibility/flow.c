@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "base/timer.h"
+#include "visibility/line_order.h"
 #include "visibility/separator.h"
 
 #include <stdlib.h>
@@ -124,6 +125,12 @@ static bool is_left(const enf_flow *flow, int32_t depth) {
 
 // ---------------------------------------------------------------------------------------------- sequences
 
+static bool is_in_order(const enf_flow *flow, const enf_stab *stab, int32_t count) {
+    if (!flow->options.exact || !(stab->has_line || stab->long_line)) return true;
+    return enf_line_is_in_order(flow->options.shapes, &stab->line, stab->has_line ? NULL : stab->long_line,
+                                flow->sequence, count);
+}
+
 /// Decides the sequence that ends at the level; it leads into a target. *passes: something stabs it.
 static enf_status decide(enf_flow *flow, int32_t depth, bool *passes, enf_error *error) {
     enf_line hint;
@@ -136,6 +143,7 @@ static enf_status decide(enf_flow *flow, int32_t depth, bool *passes, enf_error 
     if (status) return status;
     *passes = stab.answer != ENF_STAB_HIDDEN;
     if (!*passes) return ENF_OK;
+    if (!is_in_order(flow, &stab, depth + 1)) return ENF_OK; // so this is no proof, but the branch goes on
     int32_t cell = enf_portal_to(flow->options.shapes->graph, flow->levels[depth].portal);
     enf_bit_clear(flow->targets, cell);
     drop_wanted(flow, cell);

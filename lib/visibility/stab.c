@@ -78,6 +78,12 @@ static void set_line(enf_stab *stab, const enf_line *line) {
     *stab = (enf_stab){.answer = ENF_STAB_VISIBLE, .has_line = true, .line = *line};
 }
 
+static void count_size(enf_stabber *stabber) {
+    int size = 0;
+    while (size < ENF_STAB_SIZES - 1 && stabber->edge_count >= 8 << size) size++;
+    stabber->counts.sizes[size]++;
+}
+
 /// The hint, and whether the relaxation has a solution: HIDDEN, OPEN or VISIBLE.
 static enf_status begin(enf_stabber *stabber, const int32_t *sequence, int32_t count, const enf_line *hint,
                         enf_stab *stab, enf_error *error) {
@@ -93,6 +99,7 @@ static enf_status begin(enf_stabber *stabber, const int32_t *sequence, int32_t c
     }
     if (!enf_stabber_take(stabber, sequence, count))
         return enf_fail_memory(error, "a portal sequence's edges");
+    count_size(stabber);
     enf_line guess = hint ? *hint : enf_stabber_guess(stabber);
     enf_status status = decide_program(stabber, &guess, &feasible, error);
     if (status == ENF_OK && feasible) stab->answer = ENF_STAB_OPEN;

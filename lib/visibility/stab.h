@@ -26,6 +26,8 @@ typedef struct enf_stab {
     const char *long_line;
 } enf_stab;
 
+enum { ENF_STAB_SIZES = 8 };
+
 typedef struct enf_stab_counts {
     int64_t calls, hints;   ///< calls; those that the hint answered
     int64_t zero_by_double; ///< hidden: 0 is in a hull, shown by doubles
@@ -36,10 +38,11 @@ typedef struct enf_stab_counts {
     int64_t searched;       ///< lines that took a search
     int64_t quadrics;       ///< decisions about the cone and the quadric in whole numbers
     int64_t quadrics_hidden;
-    int64_t undecided;     ///< of those, cones of more than 512 sides, taken for visible
-    int64_t lines_fine;    ///< lines between doubles that were found from a line in more digits
-    int64_t lines_long;    ///< lines in more digits than doubles have
-    int64_t lines_missing; ///< visible, but no line was found: only if undecided
+    int64_t undecided;             ///< of those, cones of more than 512 sides, taken for visible
+    int64_t lines_fine;            ///< lines between doubles that were found from a line in more digits
+    int64_t lines_long;            ///< lines in more digits than doubles have
+    int64_t lines_missing;         ///< visible, but no line was found: only if undecided
+    int64_t sizes[ENF_STAB_SIZES]; ///< programs of fewer than 8, 16, 32, ... edges; the last: or more
 } enf_stab_counts;
 
 /// Scratch memory and counters of one thread.
