@@ -5,6 +5,8 @@
 #include "visibility/visibility.h"
 
 #include "visibility/check_hidden.h"
+#include "visibility/check_witness.h"
+#include "visibility/line_order.h"
 
 #include <inttypes.h>
 #include <setjmp.h>
@@ -119,6 +121,45 @@ static void slits_are_decided_exactly(void **state) {
     assert_false(sees_through_slit(0));
     assert_false(sees_through_slit(-1e-9));
     assert_false(sees_through_slit(-1e-3));
+}
+
+/// Two openings of a level in one slanted plane, but for rounding: a line passes the edges of both, and comes
+/// to the wrong one first. It shows nothing.
+static void order_along_the_line_counts(void **state) {
+    (void)state;
+    static const double one[4][3] = {{288, 688, 128.00000000000017},
+                                     {192, 688, 128.00000000000017},
+                                     {192, 692, 129.357142857143},
+                                     {288, 692, 129.357142857143}};
+    static const double two[4][3] = {{160, 688, 128.00000000000017},
+                                     {-72, 688, 128.0000000000002},
+                                     {-72, 692, 129.35714285714303},
+                                     {160, 692, 129.357142857143}};
+    enf_portal_graph graph = {.cell_count = 3};
+    assert_true(enf_portal_graph_add(&graph, 0, 1, one, 4) && enf_portal_graph_add(&graph, 2, 1, two, 4));
+    finish(&graph);
+    const enf_line line = {{-139.75761067929312, 689.43176621212024, 128.48577782196955},
+                           {207.99784404816833, 689.59661747543248, 128.54170950059333}};
+    static const int32_t sequence[2] = {0, 3}, other[2] = {3, 0};
+    assert_true(enf_line_passes(&line, &graph, sequence[0]) && enf_line_passes(&line, &graph, sequence[1]));
+    enf_shapes shapes;
+    assert_true(enf_shapes_make(&shapes, &graph));
+    assert_false(enf_line_is_in_order(&shapes, &line, NULL, sequence, 2));
+    assert_true(enf_line_is_in_order(&shapes, &line, NULL, sequence, 1));
+    assert_true(enf_line_is_in_order(&shapes, &line, NULL, other, 2));
+    enf_shapes_free(&shapes);
+    enf_witness_checker checker;
+    const enf_witness witness = {.cell = {0, 2},
+                                 .from = {line.from[0], line.from[1], line.from[2]},
+                                 .to = {line.to[0], line.to[1], line.to[2]}};
+    assert_true(enf_witness_checker_make(&checker, &graph));
+    assert_int_equal(enf_witness_check(&checker, &witness).fault, ENF_WITNESS_STUCK);
+    enf_witness_checker_free(&checker);
+    enf_visibility exact = run(&graph, ENF_METHOD_EXACT, 1, true);
+    assert_false(enf_pvs_get(&exact.pvs, 0, 2));
+    assert_true(enf_pvs_get(&exact.pvs, 0, 1) && enf_pvs_get(&exact.pvs, 1, 2));
+    enf_visibility_free(&exact);
+    enf_portal_graph_free(&graph);
 }
 
 static void cells_without_portals_see_themselves(void **state) {
@@ -366,6 +407,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(a_row_of_doors_is_seen_through),
         cmocka_unit_test(doors_side_by_side_hide),
         cmocka_unit_test(slits_are_decided_exactly),
+        cmocka_unit_test(order_along_the_line_counts),
         cmocka_unit_test(cells_without_portals_see_themselves),
 #ifdef ENFILADE_SHARED_DIR
         cmocka_unit_test(each_rung_contains_the_next),
