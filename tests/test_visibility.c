@@ -162,6 +162,19 @@ static void order_along_the_line_counts(void **state) {
     enf_portal_graph_free(&graph);
 }
 
+/// Two square matrices of eight million portals: refused with words, before anything is done.
+static void what_does_not_fit_is_refused(void **state) {
+    (void)state;
+    enum { MANY = 4000000 };
+    enf_portal_graph graph = {.cell_count = 2, .opening_count = MANY};
+    const enf_visibility_options options = {.method = ENF_METHOD_EXACT, .threads = 1};
+    enf_visibility visibility;
+    enf_error error = {0};
+    assert_int_equal(enf_visibility_run(&visibility, &graph, &options, &error), ENF_NO_RESOURCES);
+    assert_non_null(strstr(error.text, "4000000 openings"));
+    enf_visibility_free(&visibility);
+}
+
 static void cells_without_portals_see_themselves(void **state) {
     (void)state;
     enf_portal_graph graph = {.cell_count = 3};
@@ -408,6 +421,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(doors_side_by_side_hide),
         cmocka_unit_test(slits_are_decided_exactly),
         cmocka_unit_test(order_along_the_line_counts),
+        cmocka_unit_test(what_does_not_fit_is_refused),
         cmocka_unit_test(cells_without_portals_see_themselves),
 #ifdef ENFILADE_SHARED_DIR
         cmocka_unit_test(each_rung_contains_the_next),

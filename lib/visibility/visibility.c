@@ -4,11 +4,13 @@
 #include "visibility/visibility.h"
 
 #include "base/array.h"
+#include "base/memory.h"
 #include "base/timer.h"
 #include "visibility/cast.h"
 #include "visibility/facing.h"
 #include "visibility/settle.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -119,6 +121,17 @@ static bool add_neighbours(enf_sightings *sightings, const enf_portal_graph *gra
 }
 
 // ---------------------------------------------------------------------------------------------- rungs
+
+/// Two matrices of all portals at a time are most of what is needed. A system that lends more memory than it
+/// has would kill us when they are filled.
+static enf_status refuse_too_large(const enf_portal_graph *graph, enf_error *error) {
+    const char *limiter;
+    double portals = 2.0 * graph->opening_count, bytes = 2 * portals * portals / 8 + 2000 * portals;
+    if (bytes < (double)enf_memory_limit(&limiter)) return ENF_OK;
+    return enf_fail(error, ENF_NO_RESOURCES,
+                    "%" PRId32 " openings take %.3g MB, more than %s allows; split the world, or use reach",
+                    graph->opening_count, bytes / 1e6, limiter);
+}
 
 static enf_status face(ladder *ladder, enf_error *error) {
     enf_workplace *place = place_for(ladder, "facing");
@@ -238,7 +251,8 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
         .visibility = visibility,
         .place = {.deadline = options->budget_seconds > 0 ? started + options->budget_seconds : INFINITY,
                   .team = options->team}};
-    enf_status status = enf_pvs_new(&visibility->pvs, graph->cell_count, error);
+    enf_status status = options->method > ENF_METHOD_REACH ? refuse_too_large(graph, error) : ENF_OK;
+    if (!status) status = enf_pvs_new(&visibility->pvs, graph->cell_count, error);
     if (!status) status = open_checkpoint(&ladder, error);
     if (!status) status = climb(&ladder, error);
     visibility->portal_pairs = enf_bits_count(ladder.cast.beams.words, (size_t)ladder.cast.beams.row_count *
