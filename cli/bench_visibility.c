@@ -9,7 +9,7 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "format/output.h"
-#include "visibility/sampler.h"
+#include "visibility_check/sampler.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

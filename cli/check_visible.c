@@ -2,7 +2,7 @@
 // enfilade check IN.prt --pvs PVS.txt: a visible set against its portal graph.
 #include "cli/check.h"
 #include "cli/cli.h"
-#include "visibility/check_pvs.h"
+#include "visibility_check/check_pvs.h"
 
 #include <stdlib.h>
 

@@ -13,10 +13,10 @@
 #include <string.h>
 
 #include "process.h"
-#include "visibility/check_hidden.h"
-#include "visibility/check_pvs.h"
 #include "visibility/decimal.h"
-#include "visibility/sampler.h"
+#include "visibility_check/check_hidden.h"
+#include "visibility_check/check_pvs.h"
+#include "visibility_check/sampler.h"
 #include "witness_graphs.h"
 
 // ---------------------------------------------------------------------------------------------- rows

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ladder of visibility: each rung contains the next, results do not depend on threads, on how portals are
 // numbered or on scale, sets are symmetric, and witnesses pass what they should.
-#include "visibility/check_witness.h"
 #include "visibility/visibility.h"
+#include "visibility_check/check_witness.h"
 
-#include "visibility/check_hidden.h"
-#include "visibility/check_witness.h"
 #include "visibility/line_order.h"
+#include "visibility_check/check_hidden.h"
+#include "visibility_check/check_witness.h"
 
 #include <inttypes.h>
 #include <setjmp.h>

@@ -13,11 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "visibility/check_hidden.h"
-#include "visibility/check_witness.h"
-#include "visibility/hidden_pieces.h"
-#include "visibility/hidden_proof.h"
-#include "visibility/sampler.h"
+#include "visibility_check/check_hidden.h"
+#include "visibility_check/check_witness.h"
+#include "visibility_check/hidden_pieces.h"
+#include "visibility_check/hidden_proof.h"
+#include "visibility_check/sampler.h"
 #include "witness_graphs.h"
 
 // ---------------------------------------------------------------------------------------------- sight lines

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Depth first through the portals, from each cell in turn.
-#include "visibility/check_hidden.h"
+#include "visibility_check/check_hidden.h"
 
 #include "base/array.h"
 #include "base/timer.h"
-#include "visibility/hidden_search.h"
+#include "visibility_check/hidden_search.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a linear program over line space cannot rule out: lines from a triangle of the first portal to one of
 // the last, as pairs of points, halved until every piece is proved empty or a line is found.
-#ifndef ENF_VISIBILITY_HIDDEN_PIECES_H
-#define ENF_VISIBILITY_HIDDEN_PIECES_H
+#ifndef ENF_VISIBILITY_CHECK_HIDDEN_PIECES_H
+#define ENF_VISIBILITY_CHECK_HIDDEN_PIECES_H
 
-#include "visibility/hidden_exact.h"
-#include "visibility/matrix_game.h"
+#include "visibility_check/hidden_exact.h"
+#include "visibility_check/matrix_game.h"
 
 typedef enum enf_pieces_answer {
     ENF_PIECES_OPEN = 0, ///< the limit was reached (or there was no memory): nothing is known

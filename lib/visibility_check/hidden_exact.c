@@ -3,10 +3,10 @@
 // common denominator (Edmonds' integer pivoting): w >= 0 makes the sum of the forms <= 0 at the nine pairs of
 // corners if sum of w can grow without end under that condition; if it can't, the dual solution is a weight
 // for each pair of corners with which every form is positive.
-#include "visibility/hidden_exact.h"
+#include "visibility_check/hidden_exact.h"
 
 #include "base/array.h"
-#include "visibility/whole_number.h"
+#include "visibility_check/whole_number.h"
 
 #include <math.h>
 #include <stdlib.h>

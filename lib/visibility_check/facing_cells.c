@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "visibility/facing_cells.h"
+#include "visibility_check/facing_cells.h"
 
 #include "base/array.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The simplex method on the full tableau: raise all numbers above 0, then maximise the sum of w where each
 // row's sum of w times numbers is at most 1 (Dantzig, "Linear Programming and Extensions", 1963, ch. 13).
-#include "visibility/matrix_game.h"
+#include "visibility_check/matrix_game.h"
 
 #include "base/array.h"
 

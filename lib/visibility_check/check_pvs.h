@@ -6,7 +6,7 @@
 
 #include "build/check.h"
 #include "visibility/pvs.h"
-#include "visibility/read_witness.h"
+#include "visibility_check/read_witness.h"
 
 typedef struct enf_pvs_check_options {
     const enf_witness_list *witnesses; ///< sorted; null: that row is skipped

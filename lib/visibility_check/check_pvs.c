@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "visibility/check_pvs.h"
+#include "visibility_check/check_pvs.h"
 
 #include "base/array.h"
-#include "visibility/check_hidden.h"
-#include "visibility/sampler.h"
+#include "visibility_check/check_hidden.h"
+#include "visibility_check/sampler.h"
 
 #include <inttypes.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which cells can be reached through portals that lie in front of a portal and have it behind them? More than
 // can be seen, never less: for the checker of hidden pairs, which uses it to leave out what is pointless.
-#ifndef ENF_VISIBILITY_FACING_CELLS_H
-#define ENF_VISIBILITY_FACING_CELLS_H
+#ifndef ENF_VISIBILITY_CHECK_FACING_CELLS_H
+#define ENF_VISIBILITY_CHECK_FACING_CELLS_H
 
 #include "visibility/portal_graph.h"
 

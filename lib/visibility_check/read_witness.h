@@ -2,10 +2,10 @@
 // Sight lines from their text: a line `i j x y z x y z` for each, two cells, i < j, and two points; sorted by
 // i and j, no pair twice. Coordinates are rounded to doubles, unless one of a line's six has more digits than
 // 17: then all six are meant as they stand.
-#ifndef ENF_VISIBILITY_READ_WITNESS_H
-#define ENF_VISIBILITY_READ_WITNESS_H
+#ifndef ENF_VISIBILITY_CHECK_READ_WITNESS_H
+#define ENF_VISIBILITY_CHECK_READ_WITNESS_H
 
-#include "visibility/check_witness.h"
+#include "visibility_check/check_witness.h"
 
 typedef struct enf_witness_list {
     enf_witness *items;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exact side of hidden_pieces.c: what doubles suggest about a piece of line space is proved or decided
 // here, with whole numbers.
-#ifndef ENF_VISIBILITY_HIDDEN_EXACT_H
-#define ENF_VISIBILITY_HIDDEN_EXACT_H
+#ifndef ENF_VISIBILITY_CHECK_HIDDEN_EXACT_H
+#define ENF_VISIBILITY_CHECK_HIDDEN_EXACT_H
 
 #include "visibility/portal_graph.h"
 

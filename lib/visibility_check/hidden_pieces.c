@@ -3,7 +3,7 @@
 // of their barycentric coordinates is positive. Over a piece (a triangle within each) the form lies between
 // its values at the nine pairs of corners. If weights of edges make the sum of their forms <= 0 at all nine,
 // no line of the piece passes all edges; that is verified with whole numbers.
-#include "visibility/hidden_pieces.h"
+#include "visibility_check/hidden_pieces.h"
 
 #include "base/array.h"
 

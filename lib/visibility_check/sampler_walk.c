@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Walking a line through the cells: six multiplications and additions for an edge.
-#include "visibility/sampler_parts.h"
+#include "visibility_check/sampler_parts.h"
 
 #include "base/array.h"
 

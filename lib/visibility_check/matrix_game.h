@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Matrix games with nine rows, in doubles: what the checker of hidden pairs asks about a piece of line space.
-#ifndef ENF_VISIBILITY_MATRIX_GAME_H
-#define ENF_VISIBILITY_MATRIX_GAME_H
+#ifndef ENF_VISIBILITY_CHECK_MATRIX_GAME_H
+#define ENF_VISIBILITY_CHECK_MATRIX_GAME_H
 
 #include "enfilade/base.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which cells see each other, found by throwing lines: never all pairs, but each with a line to show for it.
 // A test tool: it shares nothing with the solver.
-#ifndef ENF_VISIBILITY_SAMPLER_H
-#define ENF_VISIBILITY_SAMPLER_H
+#ifndef ENF_VISIBILITY_CHECK_SAMPLER_H
+#define ENF_VISIBILITY_CHECK_SAMPLER_H
 
-#include "visibility/check_witness.h"
-#include "visibility/line_simplex.h"
+#include "visibility_check/check_witness.h"
+#include "visibility_check/line_simplex.h"
 
 /// Clearance: the least distance between the line and the line of any edge of a portal on the way. (The edge
 /// itself may be further away, never nearer.)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Check: does a line come to one portal before another? Exactly; for portals that lie in one plane, but for
 // rounding, where a line can pass the edges of both and still come to the wrong one first.
-#ifndef ENF_VISIBILITY_WITNESS_ORDER_H
-#define ENF_VISIBILITY_WITNESS_ORDER_H
+#ifndef ENF_VISIBILITY_CHECK_WITNESS_ORDER_H
+#define ENF_VISIBILITY_CHECK_WITNESS_ORDER_H
 
 #include "visibility/portal_graph.h"
 

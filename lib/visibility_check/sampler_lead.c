@@ -3,7 +3,7 @@
 // line hits. The linear program over the portals on the way and one more finds such a slit at once. Its point
 // need not be a line: a few steps lead from it to one (the quadric of lines replaced by its tangent plane,
 // again a linear program, each time from the line found before).
-#include "visibility/sampler_parts.h"
+#include "visibility_check/sampler_parts.h"
 
 #include "base/array.h"
 

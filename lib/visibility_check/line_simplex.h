@@ -2,8 +2,8 @@
 // Is there a point of line space on the inner side of every edge? The linear program of a portal sequence,
 // for the sampler and the checker of hidden pairs, in doubles. Nothing is decided here: what follows from a
 // result is verified exactly elsewhere.
-#ifndef ENF_VISIBILITY_LINE_SIMPLEX_H
-#define ENF_VISIBILITY_LINE_SIMPLEX_H
+#ifndef ENF_VISIBILITY_CHECK_LINE_SIMPLEX_H
+#define ENF_VISIBILITY_CHECK_LINE_SIMPLEX_H
 
 #include "enfilade/base.h"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of the search of check_hidden.c, and the question it asks at every portal.
-#ifndef ENF_VISIBILITY_HIDDEN_SEARCH_H
-#define ENF_VISIBILITY_HIDDEN_SEARCH_H
+#ifndef ENF_VISIBILITY_CHECK_HIDDEN_SEARCH_H
+#define ENF_VISIBILITY_CHECK_HIDDEN_SEARCH_H
 
-#include "visibility/check_hidden.h"
-#include "visibility/check_witness.h"
-#include "visibility/facing_cells.h"
-#include "visibility/hidden_pieces.h"
-#include "visibility/hidden_proof.h"
-#include "visibility/line_simplex.h"
+#include "visibility_check/check_hidden.h"
+#include "visibility_check/check_witness.h"
+#include "visibility_check/facing_cells.h"
+#include "visibility_check/hidden_pieces.h"
+#include "visibility_check/hidden_proof.h"
+#include "visibility_check/line_simplex.h"
 
 /// A portal on the way from the source.
 typedef struct hidden_frame {

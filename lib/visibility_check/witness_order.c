@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "visibility/witness_order.h"
+#include "visibility_check/witness_order.h"
 
 /// Scratch, and the latest share of the way at which the line comes to a portal, or the earliest.
 typedef struct order {

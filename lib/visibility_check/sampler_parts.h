@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the sampler's files share.
-#ifndef ENF_VISIBILITY_SAMPLER_PARTS_H
-#define ENF_VISIBILITY_SAMPLER_PARTS_H
+#ifndef ENF_VISIBILITY_CHECK_SAMPLER_PARTS_H
+#define ENF_VISIBILITY_CHECK_SAMPLER_PARTS_H
 
-#include "visibility/sampler.h"
+#include "visibility_check/sampler.h"
 
 /// Walks the line from its cell, in its direction and against it; the walk stays in the sampler until the
 /// next one. Returns the place of the line's cell, -1 without memory.

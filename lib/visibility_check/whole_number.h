@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finite doubles as whole numbers of GMP: multiples of a power of two that all of them share.
-#ifndef ENF_VISIBILITY_WHOLE_NUMBER_H
-#define ENF_VISIBILITY_WHOLE_NUMBER_H
+#ifndef ENF_VISIBILITY_CHECK_WHOLE_NUMBER_H
+#define ENF_VISIBILITY_CHECK_WHOLE_NUMBER_H
 
 #include "visibility/portal_graph.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the lines come from.
-#include "visibility/sampler.h"
+#include "visibility_check/sampler.h"
 
 #include "base/array.h"
 #include "base/timer.h"
-#include "visibility/sampler_parts.h"
+#include "visibility_check/sampler_parts.h"
 
 #include <math.h>
 #include <stdlib.h>

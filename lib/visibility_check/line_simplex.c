@@ -2,7 +2,7 @@
 // The revised simplex method with the inverse of a 7 by 7 basis kept up by elimination (Dantzig, "Linear
 // Programming and Extensions", 1963). The largest violation enters; after many steps the first one does
 // (Bland's rule), so it does not go round in circles.
-#include "visibility/line_simplex.h"
+#include "visibility_check/line_simplex.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "visibility/hidden_search.h"
+#include "visibility_check/hidden_search.h"
 
 #include "base/array.h"
 

@@ -2,8 +2,8 @@
 // Exact proofs that no line passes a set of edges: weights w >= 0, not all 0, whose combination of the edges'
 // Pluecker vectors is 0 (Gordan's theorem). The simplex method names the edges; the weights are found and
 // verified here, with whole numbers.
-#ifndef ENF_VISIBILITY_HIDDEN_PROOF_H
-#define ENF_VISIBILITY_HIDDEN_PROOF_H
+#ifndef ENF_VISIBILITY_CHECK_HIDDEN_PROOF_H
+#define ENF_VISIBILITY_CHECK_HIDDEN_PROOF_H
 
 #include "visibility/portal_graph.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The weights are a vector of the null space of the edges' matrix, found by fraction-free elimination
 // (Bareiss, "Sylvester's identity and multistep integer-preserving Gaussian elimination", 1968).
-#include "visibility/hidden_proof.h"
+#include "visibility_check/hidden_proof.h"
 
 #include "base/array.h"
 #include "base/hash.h"
-#include "visibility/whole_number.h"
+#include "visibility_check/whole_number.h"
 
 #include <stdlib.h>
 #include <string.h>

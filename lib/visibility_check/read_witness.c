@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "visibility/read_witness.h"
+#include "visibility_check/read_witness.h"
 
 #include "base/array.h"
 #include "build/read.h"

@@ -2,12 +2,12 @@
 // On which side of an edge does a line pass? The sign of a 3 by 3 determinant: by doubles with Shewchuk's
 // error bound ("Adaptive precision floating-point arithmetic", 1997), else by whole numbers of any size.
 // Lines in decimals: by whole numbers only.
-#include "visibility/check_witness.h"
+#include "visibility_check/check_witness.h"
 
 #include "base/array.h"
 #include "visibility/decimal.h"
-#include "visibility/whole_number.h"
-#include "visibility/witness_order.h"
+#include "visibility_check/whole_number.h"
+#include "visibility_check/witness_order.h"
 
 #include <float.h>
 #include <math.h>

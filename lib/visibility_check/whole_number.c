@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "visibility/whole_number.h"
+#include "visibility_check/whole_number.h"
 
 #include <float.h>
 #include <math.h>
