@@ -21,10 +21,10 @@ typedef struct cli_folder {
 } cli_folder;
 
 /// The option --levels; cli/options.h has the type.
-#define CLI_LEVELS_OPTION(folder)                                                                            \
-    {                                                                                                        \
-        "--levels", 0, CLI_TEXT, &(folder).pattern, "GLOB", "only levels whose name (less .obj.gz) matches", \
-            NULL, false                                                                                      \
+#define CLI_LEVELS_OPTION(folder)                                           \
+    {                                                                       \
+        "--levels", 0, CLI_TEXT, &(folder).pattern, "GLOB",                 \
+            "only levels whose name (less its ending) matches", NULL, false \
     }
 
 /// Returns the worst exit status.

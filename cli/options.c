@@ -60,6 +60,19 @@ static int read_choice(const cli_syntax *syntax, cli_option *option, const char 
     return cli_misuse(syntax, "%s: there is no '%.100s'; choose one of %s", option->name, value, names);
 }
 
+/// Seconds, minutes or hours.
+static bool read_seconds(const char *value, double *seconds) {
+    static const char units[] = "smh";
+    static const double lengths[] = {1, 60, 3600};
+    const char *end;
+    double number;
+    if (!cli_read_number(value, &end, &number) || !(number >= 0)) return false;
+    const char *unit = *end ? strchr(units, *end) : units;
+    if (!unit || (*end && end[1])) return false;
+    *seconds = number * lengths[unit - units];
+    return true;
+}
+
 static int read_count(const cli_syntax *syntax, cli_option *option, const char *value) {
     char *end;
     errno = 0;
@@ -110,6 +123,10 @@ static int set(const cli_syntax *syntax, cli_option *option, const char *value) 
         return cli_misuse(syntax, "%s: '%.100s' is no number; write one that is 0 or more", option->name,
                           value);
     }
+    case CLI_SECONDS:
+        if (read_seconds(value, option->target)) return -1;
+        return cli_misuse(syntax, "%s: '%.100s' is no time; write a number of seconds, or 60s, 5m, 2h",
+                          option->name, value);
     case CLI_BYTES:
         if (enf_memory_parse(value, option->target)) return -1;
         return cli_misuse(syntax,

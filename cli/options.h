@@ -6,14 +6,15 @@
 #include "enfilade/base.h"
 
 typedef enum cli_option_kind {
-    CLI_FLAG,   ///< bool
-    CLI_TEXT,   ///< const char *
-    CLI_TEXTS,  ///< cli_texts; may be repeated
-    CLI_LENGTH, ///< double, finite, >= 0
-    CLI_COUNT,  ///< int, 1..1024
-    CLI_CHOICE, ///< int, the position in `choices`
-    CLI_BYTES,  ///< uint64_t, above 0; "512M", "16G"
-    CLI_POINTS, ///< cli_points; "X,Y,Z"; may be repeated
+    CLI_FLAG,    ///< bool
+    CLI_TEXT,    ///< const char *
+    CLI_TEXTS,   ///< cli_texts; may be repeated
+    CLI_LENGTH,  ///< double, finite, >= 0
+    CLI_SECONDS, ///< the same; "90", "90s", "1.5m", "13h"
+    CLI_COUNT,   ///< int, 1..1024
+    CLI_CHOICE,  ///< int, the position in `choices`
+    CLI_BYTES,   ///< uint64_t, above 0; "512M", "16G"
+    CLI_POINTS,  ///< cli_points; "X,Y,Z"; may be repeated
 } cli_option_kind;
 
 typedef struct cli_texts {

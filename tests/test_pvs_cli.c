@@ -170,7 +170,7 @@ static void the_report_has_the_fixed_keys(void **state) {
         "\"witnesses\": 0",
     };
     process ran =
-        expect_success(NULL, "pvs row.prt -o report.txt --method reach --threads 2 --budget 2.5 --report "
+        expect_success(NULL, "pvs row.prt -o report.txt --method reach --threads 2 --budget 2.5s --report "
                              "report.json -v");
     size_t size;
     char *report = read_file("report.json", &size);
@@ -248,8 +248,9 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"pvs row.prt row.prt -o out.txt", "one word too many"},
         {"pvs row.prt -o out.txt --method none", "choose one of reach, facing, hourglass, lp, exact"},
         {"pvs row.prt -o out.txt --threads 0", "whole number from 1"},
-        {"pvs row.prt -o out.txt --budget -1", "is no number"},
-        {"pvs row.prt -o out.txt --budget soon", "is no number"},
+        {"pvs row.prt -o out.txt --budget -1", "is no time"},
+        {"pvs row.prt -o out.txt --budget soon", "is no time"},
+        {"pvs row.prt -o out.txt --budget 5ss", "is no time"},
         {"pvs row.prt -o out.txt --progress sometimes", "choose one of auto, always, never"},
         {"pvs row.prt -o out.txt -v -q", "contradict"},
         {"pvs row.prt -o row.prt", "'row.prt' would be written over"},
