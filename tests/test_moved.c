@@ -13,6 +13,8 @@
 
 #include <cmocka.h>
 
+#include "tests/shared_data.h"
+
 /// What rounding does: 2^-53 of coordinates of some thousands, a few times.
 static const double rounding = 1e-11;
 
@@ -72,10 +74,9 @@ static int64_t compare(const enf_portal_graph *graph, const enf_visibility *here
     return count;
 }
 
-#ifdef ENFILADE_SHARED_DIR
 static void move(const char *level, const double rows[3][3], const double by[3]) {
     char path[1024];
-    snprintf(path, sizeof path, "%s/quake/prt/%s.prt", ENFILADE_SHARED_DIR, level);
+    snprintf(path, sizeof path, "%s/quake/prt/%s.prt", shared_data(), level);
     enf_portal_graph graph, moved;
     enf_error error = {0};
     if (enf_portal_graph_read(&graph, path, &error) || enf_portal_graph_read(&moved, path, &error))
@@ -110,18 +111,6 @@ static void turned_levels_see_the_same(void **state) {
     static const double turned[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}};
     move("dm4", turned, (const double[3]){0, 0, 0});
 }
-#else
-static void moved_levels_see_the_same(void **state) {
-    (void)state;
-    print_message("no shared data: levels are not tried\n");
-    skip();
-}
-
-static void turned_levels_see_the_same(void **state) {
-    (void)state;
-    skip();
-}
-#endif
 
 int main(void) {
     const struct CMUnitTest tests[] = {

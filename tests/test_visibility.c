@@ -17,6 +17,8 @@
 
 #include <cmocka.h>
 
+#include "tests/shared_data.h"
+
 static enf_visibility run(const enf_portal_graph *graph, enf_method method, int threads, bool witnesses) {
     const enf_visibility_options options = {
         .method = method, .threads = threads, .want_witnesses = witnesses};
@@ -189,10 +191,9 @@ static void cells_without_portals_see_themselves(void **state) {
 
 // ---------------------------------------------------------------------------------------------- levels
 
-#ifdef ENFILADE_SHARED_DIR
 static enf_portal_graph read_level(const char *level) {
     char path[1024];
-    snprintf(path, sizeof path, "%s/quake/prt/%s.prt", ENFILADE_SHARED_DIR, level);
+    snprintf(path, sizeof path, "%s/quake/prt/%s.prt", shared_data(), level);
     enf_portal_graph graph;
     enf_error error = {0};
     if (enf_portal_graph_read(&graph, path, &error)) fail_msg("%s", error.text);
@@ -385,7 +386,7 @@ static void what_is_hidden_is_confirmed(void **state) {
 static void agrees_with_another_program(void **state) {
     (void)state;
     char path[1024];
-    snprintf(path, sizeof path, "%s/quake/prt/dm1.pvs.txt.gz", ENFILADE_SHARED_DIR);
+    snprintf(path, sizeof path, "%s/quake/prt/dm1.pvs.txt.gz", shared_data());
     enf_portal_graph graph = read_level("dm1");
     enf_visibility exact = run(&graph, ENF_METHOD_EXACT, 2, false);
     enf_pvs other;
@@ -407,13 +408,6 @@ static void agrees_with_another_program(void **state) {
     enf_visibility_free(&exact);
     enf_portal_graph_free(&graph);
 }
-#else
-static void skip_levels(void **state) {
-    (void)state;
-    print_message("no shared data: levels are not tried\n");
-    skip();
-}
-#endif
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
@@ -423,7 +417,6 @@ int main(int argc, char **argv) {
         cmocka_unit_test(order_along_the_line_counts),
         cmocka_unit_test(what_does_not_fit_is_refused),
         cmocka_unit_test(cells_without_portals_see_themselves),
-#ifdef ENFILADE_SHARED_DIR
         cmocka_unit_test(each_rung_contains_the_next),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(numbers_and_scale_do_not_matter),
@@ -431,9 +424,6 @@ int main(int argc, char **argv) {
         cmocka_unit_test(witnesses_leave_and_arrive),
         cmocka_unit_test(what_is_hidden_is_confirmed),
         cmocka_unit_test(agrees_with_another_program),
-#else
-        cmocka_unit_test(skip_levels),
-#endif
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests_name("visibility", tests, NULL, NULL);
