@@ -54,9 +54,12 @@ static bool send_line(const casting *casting, caster *caster, int32_t source, co
     return true;
 }
 
-/// A point between the middle and a corner, near the corner.
+/// A point between the middle and a corner, near the corner. (Of 0.5, 0.75 and 0.9, this found most.)
+static const double lean_share = 0.9;
+
 static void lean(const double middle[3], const double corner[3], double point[3]) {
-    for (int axis = 0; axis < 3; axis++) point[axis] = middle[axis] + 0.9 * (corner[axis] - middle[axis]);
+    for (int axis = 0; axis < 3; axis++)
+        point[axis] = middle[axis] + lean_share * (corner[axis] - middle[axis]);
 }
 
 /// Sends lines until one arrives at a portal: from middle to middle of the source and of what its beams reach

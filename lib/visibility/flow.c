@@ -29,7 +29,8 @@ struct enf_flow {
     level *levels;
     int32_t *sequence;
     size_t mask_capacity, level_capacity, sequence_capacity;
-    uint64_t *targets; ///< the caller's
+    uint64_t *targets;  ///< the caller's
+    uint64_t *doubtful; ///< a row of cells: a line passes the edges of all portals, in the wrong order
     int32_t cell;
     size_t low, high; ///< the words that hold wanted bits, or bits of the source's row
     enf_window from;
@@ -45,6 +46,10 @@ static bool make_room(enf_flow *flow, int32_t depth) {
            enf_array_reserve(flow->masks, flow->mask_capacity, levels * flow->words);
 }
 
+static size_t cell_words(const enf_flow *flow) {
+    return ((size_t)flow->options.shapes->graph->cell_count + 63) / 64;
+}
+
 enf_flow *enf_flow_new(const enf_flow_options *options) {
     enf_flow *flow = calloc(1, sizeof *flow);
     if (!flow) return NULL;
@@ -52,7 +57,8 @@ enf_flow *enf_flow_new(const enf_flow_options *options) {
     flow->words = options->beams->row_words;
     flow->wanted = enf_array_zeroed(flow->words, sizeof *flow->wanted);
     flow->stabber = enf_stabber_new(options->pluecker);
-    if (flow->wanted && flow->stabber && make_room(flow, 16)) return flow;
+    flow->doubtful = enf_array_zeroed(cell_words(flow), sizeof *flow->doubtful);
+    if (flow->wanted && flow->doubtful && flow->stabber && make_room(flow, 16)) return flow;
     enf_flow_free(flow);
     return NULL;
 }
@@ -61,6 +67,7 @@ void enf_flow_free(enf_flow *flow) {
     if (!flow) return;
     enf_stabber_free(flow->stabber);
     free(flow->wanted);
+    free(flow->doubtful);
     free(flow->masks);
     free(flow->levels);
     free(flow->sequence);
@@ -143,7 +150,10 @@ static enf_status decide(enf_flow *flow, int32_t depth, bool *passes, enf_error 
     if (status) return status;
     *passes = stab.answer != ENF_STAB_HIDDEN;
     if (!*passes) return ENF_OK;
-    if (!is_in_order(flow, &stab, depth + 1)) return ENF_OK; // so this is no proof, but the branch goes on
+    if (!is_in_order(flow, &stab, depth + 1)) { // no proof, but no reason to hide it either
+        enf_bit_set(flow->doubtful, enf_portal_to(flow->options.shapes->graph, flow->levels[depth].portal));
+        return ENF_OK;
+    }
     int32_t cell = enf_portal_to(flow->options.shapes->graph, flow->levels[depth].portal);
     enf_bit_clear(flow->targets, cell);
     drop_wanted(flow, cell);
@@ -216,6 +226,17 @@ static enf_status search(enf_flow *flow, int32_t source, enf_error *error) {
     return ENF_OK;
 }
 
+/// What was only seen in the wrong order counts as seen, without a line: nothing may be missed.
+static void see_doubtful(enf_flow *flow) {
+    const enf_stab no_line = {.answer = ENF_STAB_VISIBLE};
+    for (int32_t c = -1; (c = enf_bit_next(flow->doubtful, cell_words(flow), c + 1)) >= 0;) {
+        enf_bit_clear(flow->doubtful, c);
+        if (!enf_bit_get(flow->targets, c)) continue;
+        enf_bit_clear(flow->targets, c);
+        flow->options.seen(flow->options.user, flow->cell, c, &no_line, 0);
+    }
+}
+
 enf_status enf_flow_settle(enf_flow *flow, int32_t cell, uint64_t *targets, bool *late, enf_error *error) {
     const enf_portal_graph *graph = flow->options.shapes->graph;
     flow->targets = targets;
@@ -225,6 +246,7 @@ enf_status enf_flow_settle(enf_flow *flow, int32_t cell, uint64_t *targets, bool
     for (int32_t k = graph->cell_portal[cell]; !status && !flow->late && k < graph->cell_portal[cell + 1];
          k++)
         status = search(flow, graph->cell_portals[k], error);
+    see_doubtful(flow);
     *late = flow->late;
     return status;
 }

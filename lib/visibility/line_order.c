@@ -107,19 +107,25 @@ static bool comes_after_exactly(const enf_portal_graph *graph, const enf_line *l
     return good;
 }
 
+/// Doubles can tell if the line rises through both planes by more than this, of its length, and the crossings
+/// are this far apart, of the size of the world.
+static const double steep = 0x1p-20, apart = 0x1p-16;
+
 bool enf_line_is_in_order(const enf_shapes *shapes, const enf_line *line, const char *decimals,
                           const int32_t *sequence, int32_t count) {
     double way[3] = {line->to[0] - line->from[0], line->to[1] - line->from[1], line->to[2] - line->from[2]};
     double length = sqrt(enf_dot(way, way)), before = 0;
+    bool was_steep = false;
     for (int32_t i = 0; i < count; i++) {
-        double rise = enf_shape_height(shapes, sequence[i], line->to) -
-                      enf_shape_height(shapes, sequence[i], line->from);
-        double at = -enf_shape_height(shapes, sequence[i], line->from) / rise * length;
-        bool is_sure = !decimals && rise > length * 0x1p-20 && at - before > shapes->extent * 0x1p-16;
+        double start = enf_shape_height(shapes, sequence[i], line->from);
+        double rise = enf_shape_height(shapes, sequence[i], line->to) - start, at = -start / rise * length;
+        bool is_steep = !decimals && rise > length * steep;
+        bool is_sure = is_steep && was_steep && at - before > shapes->extent * apart;
         if (i > 0 && !is_sure &&
             !comes_after_exactly(shapes->graph, line, decimals, sequence[i - 1], sequence[i]))
             return false;
         before = at;
+        was_steep = is_steep;
     }
     return true;
 }

@@ -55,6 +55,10 @@ static double lowest(const enf_window *window, const double normal[3]) {
 /// are not further from those corners than 2^-14 of the window's size, or so.
 static const double band_tolerances = 0x1p14;
 
+/// Of the size of the world: spheres nearer to each other than `near` are looked at closely; contacts may be
+/// nearer than they look by `contact_error`, as corners within the band count for all that is near them.
+static const double near = 0x1p-12, contact_error = 0x1p-30;
+
 /// Two windows and the way between them.
 typedef struct passage {
     const enf_shapes *shapes;
@@ -70,10 +74,10 @@ typedef struct passage {
 static double find_slack(const passage *passage, const tangent *tangent) {
     const enf_shapes *shapes = passage->shapes;
     double distance = passage->gap;
-    if (distance < shapes->extent * 0x1p-12) {
+    if (distance < shapes->extent * near) {
         distance = enf_contact_distance(passage->one, passage->other, tangent->normal,
                                         band_tolerances * shapes->tolerance);
-        distance -= shapes->extent * 0x1p-30;
+        distance -= shapes->extent * contact_error;
     }
     if (!(distance > 0)) return HUGE_VAL;
     return shapes->tolerance * (tangent->tilt + 4 * shapes->extent / distance);
