@@ -27,6 +27,8 @@ typedef struct beam {
 struct enf_beams {
     const enf_shapes *shapes;
     const enf_bits *facing;
+    const enf_bodies *bodies; ///< or null
+    uint64_t *met;          ///< parts; or null
     beam *beams;
     int32_t *reached, reached_count;
     int32_t *heap, heap_count; ///< portals that wait
@@ -35,12 +37,13 @@ struct enf_beams {
     enf_window from, via, window, merged;
 };
 
-enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing) {
+enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const enf_bodies *bodies) {
     size_t portals = 2 * (size_t)shapes->graph->opening_count;
     enf_beams *beams = calloc(1, sizeof *beams);
     if (!beams) return NULL;
     beams->shapes = shapes;
     beams->facing = facing;
+    beams->bodies = bodies;
     beams->beams = enf_array_zeroed(portals, sizeof *beams->beams);
     beams->reached = enf_array_new(portals, sizeof *beams->reached);
     beams->heap = enf_array_new(portals, sizeof *beams->heap);
@@ -140,23 +143,44 @@ static void merge(enf_beams *beams, int32_t portal, enf_remains remains) {
 
 // ---------------------------------------------------------------------------------------------- casting
 
+/// The separators from the source to what its beams leave of `via`.
+static void find_separators(enf_beams *beams, int32_t source, int32_t via) {
+    if (via == source) {
+        enf_separators_begin(&beams->separators, beams->shapes, source);
+        return;
+    }
+    enf_beams_window(beams, via, &beams->via);
+    enf_separators_find(&beams->separators, beams->shapes, &beams->from, source, &beams->via, via);
+}
+
+/// Notes the parts in a cell that the separators leave something of.
+static void meet_bodies(enf_beams *beams, int32_t source, int32_t via, int32_t cell, bool *ready) {
+    const enf_bodies *parts = beams->bodies;
+    for (int32_t part = parts->cell_first[cell]; part < parts->cell_first[cell + 1]; part++) {
+        if (enf_bit_get(beams->met, part)) continue;
+        if (!*ready) find_separators(beams, source, via);
+        *ready = true;
+        int32_t first = parts->corner_first[part];
+        if (enf_separators_meet(&beams->separators, (const double(*)[3])(parts->corners + first),
+                                parts->corner_first[part + 1] - first))
+            enf_bit_set(beams->met, part);
+    }
+}
+
 /// From one portal into its cell and out of the others.
 static void spread(enf_beams *beams, int32_t source, int32_t via) {
     const enf_portal_graph *graph = beams->shapes->graph;
     const uint64_t *row = enf_bits_row(beams->facing, source), *via_row = enf_bits_row(beams->facing, via);
     int32_t cell = enf_portal_to(graph, via);
-    bool ready = via == source;
-    if (ready) enf_separators_begin(&beams->separators, beams->shapes, source);
+    bool ready = false;
+    if (beams->met) meet_bodies(beams, source, via, cell, &ready);
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
         int32_t next = graph->cell_portals[k];
         if (!enf_bit_get(row, next) || !enf_bit_get(via_row, next)) continue;
         bool is_new = beams->beams[next].state == BEAM_NONE;
         if (!is_new && beams->beams[next].is_whole) continue; // nothing to add
-        if (!ready) {
-            enf_beams_window(beams, via, &beams->via);
-            enf_separators_find(&beams->separators, beams->shapes, &beams->from, source, &beams->via, via);
-            ready = true;
-        }
+        if (!ready) find_separators(beams, source, via);
+        ready = true;
         enf_remains remains = enf_separators_pass(&beams->separators, beams->shapes, next, &beams->window);
         if (remains == ENF_REMAINS_NOTHING) continue;
         if (is_new)
@@ -166,7 +190,8 @@ static void spread(enf_beams *beams, int32_t source, int32_t via) {
     }
 }
 
-int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals) {
+int32_t enf_beams_cast(enf_beams *beams, int32_t source, uint64_t *met, const int32_t **portals) {
+    beams->met = beams->bodies ? met : NULL;
     for (int32_t i = 0; i < beams->reached_count; i++) beams->beams[beams->reached[i]].state = BEAM_NONE;
     beams->reached_count = beams->heap_count = 0;
     enf_shape_window(beams->shapes, source, &beams->from);

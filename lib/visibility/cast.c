@@ -90,7 +90,9 @@ static bool cast_portal(const casting *casting, caster *caster, int32_t source) 
     enf_cast *cast = casting->cast;
     const enf_portal_graph *graph = cast->sight->shapes->graph;
     const int32_t *reached;
-    int32_t count = enf_beams_cast(caster->beams, source, &reached), cell = enf_portal_from(graph, source);
+    int32_t cell = enf_portal_from(graph, source);
+    uint64_t *met = cast->bodies ? enf_bits_row(&cast->met, cell) : NULL;
+    int32_t count = enf_beams_cast(caster->beams, source, met, &reached);
     uint64_t *row = enf_bits_row(&cast->beams, source);
     for (int32_t i = 0; i < count; i++) {
         int32_t to = enf_portal_to(graph, reached[i]);
@@ -105,9 +107,20 @@ static bool cast_portal(const casting *casting, caster *caster, int32_t source) 
 
 // ---------------------------------------------------------------------------------------------- jobs
 
+static void meet_bodies_of(const enf_cast *cast, int32_t cell, int32_t other) {
+    for (int32_t k = cast->bodies->cell_first[other]; k < cast->bodies->cell_first[other + 1]; k++)
+        enf_bit_set(enf_bits_row(&cast->met, cell), k);
+}
+
 /// For portals that had no turn.
 static void keep_facing(const casting *casting, int32_t portal) {
     enf_cast *cast = casting->cast;
+    const enf_portal_graph *graph = graph_of(casting);
+    const uint64_t *row = enf_bits_row(cast->facing, portal);
+    int32_t cell = enf_portal_from(graph, portal);
+    if (cast->bodies) meet_bodies_of(cast, cell, enf_portal_to(graph, portal));
+    for (int32_t q = -1; cast->bodies && (q = enf_bit_next(row, cast->facing->row_words, q + 1)) >= 0;)
+        meet_bodies_of(cast, cell, enf_portal_to(graph, q));
     memcpy(enf_bits_row(&cast->beams, portal), enf_bits_row(cast->facing, portal),
            cast->beams.row_words * sizeof(uint64_t));
 }
@@ -140,6 +153,8 @@ static void encode_cell(void *user, int32_t cell, enf_bytes *bytes) {
     enf_put_number(bytes, (uint64_t)result->lines);
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
         enf_put_row(bytes, enf_bits_row(beams, graph->cell_portals[k]), beams->row_words);
+    if (casting->cast->bodies)
+        enf_put_row(bytes, enf_bits_row(&casting->cast->met, cell), casting->cast->met.row_words);
     if (casting->sightings) enf_put_sightings(bytes, casting->sightings, cell, 0);
 }
 
@@ -153,6 +168,8 @@ static bool decode_cell(void *user, int32_t cell, enf_reader *reader) {
     result->lines = (int64_t)enf_take_number(reader, ENF_COUNT_MOST);
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
         enf_take_row(reader, enf_bits_row(beams, graph->cell_portals[k]), beams->row_count);
+    if (casting->cast->bodies)
+        enf_take_row(reader, enf_bits_row(&casting->cast->met, cell), casting->cast->bodies->count);
     return !casting->sightings || enf_take_sightings(reader, casting->sightings, cell);
 }
 
@@ -165,11 +182,15 @@ static bool make_casting(casting *casting, int threads) {
     casting->cost = enf_array_zeroed(cells, sizeof *casting->cost);
     casting->begun = enf_array_zeroed(cells, sizeof *casting->begun);
     casting->casters = enf_array_zeroed((size_t)threads, sizeof *casting->casters);
+    if (casting->cast->bodies &&
+        !enf_bits_new(&casting->cast->met, graph->cell_count, casting->cast->bodies->count))
+        return false;
     if (!enf_bits_new(&casting->cast->beams, 2 * graph->opening_count, 2 * graph->opening_count) ||
         !casting->results || !casting->cost || !casting->begun || !casting->casters)
         return false;
     for (int i = 0; i < threads; i++) {
-        casting->casters[i].beams = enf_beams_new(casting->cast->sight->shapes, casting->cast->facing);
+        casting->casters[i].beams =
+            enf_beams_new(casting->cast->sight->shapes, casting->cast->facing, casting->cast->bodies);
         if (!casting->casters[i].beams) return false;
     }
     return true;
@@ -212,6 +233,7 @@ enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, enf_workplace 
     if (!status) {
         find_cost(&casting);
         const enf_work work = {.stage = ENF_STAGE_CAST,
+                               .key = cast->bodies ? (uint64_t)cast->bodies->count : 0,
                                .cell_count = graph_of(&casting)->cell_count,
                                .cost = casting.cost,
                                .user = &casting,
@@ -221,6 +243,8 @@ enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, enf_workplace 
         status = enf_work_run(&work, place, casting.begun, error);
     }
     if (!status) sum_up(&casting);
+    for (int32_t c = 0; !status && cast->bodies && c < graph_of(&casting)->cell_count; c++)
+        meet_bodies_of(cast, c, c);
     free_casting(&casting, threads);
     if (!status) enf_facing_symmetrise(&cast->beams);
     return status;

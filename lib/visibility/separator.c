@@ -156,3 +156,13 @@ enf_remains enf_separators_pass(const enf_separators *separators, const enf_shap
     }
     return remains;
 }
+
+bool enf_separators_meet(const enf_separators *separators, const double (*points)[3], int32_t count) {
+    for (int32_t i = 0; i < separators->count; i++) {
+        const enf_cut *cut = &separators->cuts[i];
+        int32_t k = 0;
+        while (k < count && enf_dot(cut->normal, points[k]) < cut->least) k++;
+        if (k == count) return false;
+    }
+    return true;
+}

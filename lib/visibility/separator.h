@@ -28,4 +28,7 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
 enf_remains enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
                                 enf_window *window);
 
+/// May they leave something of the hull of these points?
+bool enf_separators_meet(const enf_separators *separators, const double (*points)[3], int32_t count);
+
 #endif

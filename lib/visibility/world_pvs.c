@@ -4,7 +4,7 @@
 #include "base/array.h"
 #include "build/write_parts.h"
 #include "format/pvs_row.h"
-#include "visibility/world_graph.h"
+#include "visibility/world_visibility.h"
 
 #include <stdlib.h>
 
@@ -54,11 +54,11 @@ static enf_status add_rows(enf_image *image, const enf_visibility *visibility, e
 
 enf_status enf_world_pvs_add(enf_image *image, const enf_visibility_options *options,
                              enf_visibility *visibility, enf_error *error) {
-    enf_portal_graph graph;
+    enf_world_air air;
     *visibility = (enf_visibility){0};
-    enf_status status = enf_world_graph_make(&graph, &image->view, error);
-    if (!status) status = enf_visibility_run(visibility, &graph, options, error);
+    enf_status status = enf_world_air_make(&air, &image->view, error);
+    if (!status) status = enf_world_visibility_run(visibility, &air, &image->view, options, error);
     if (!status) status = add_rows(image, visibility, error);
-    enf_portal_graph_free(&graph);
+    enf_world_air_free(&air);
     return status;
 }

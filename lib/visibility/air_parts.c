@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "visibility/air_parts.h"
+
+#include "base/array.h"
+#include "format/frame.h"
+#include "visibility/flat_hull.h"
+#include "visibility/window.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// What a fine cell, or the hull of some, leaves of itself in a leaf.
+typedef struct piece {
+    int32_t leaf, cell;
+    int32_t first, count; ///< corners
+    bool is_thin;         ///< lies within the tolerance of a plane on the way: it does not say what is air
+} piece;
+
+/// The corners of a convex body, in the slicer's stack.
+typedef struct body {
+    size_t first;
+    int32_t count;
+    bool is_thin;
+} body;
+
+typedef struct slicer {
+    const enf_air_tree *tree;
+    int32_t cell;
+    double (*stack)[3]; ///< bodies on the way down
+    size_t stack_count, stack_capacity;
+    double (*cap)[3]; ///< scratch: where a plane cuts a body
+    size_t cap_capacity;
+    piece *pieces;
+    int32_t piece_count;
+    size_t piece_capacity;
+    double (*corners)[3]; ///< of the pieces
+    int32_t corner_count;
+    size_t corner_capacity;
+} slicer;
+
+static double height_above(const enf_air_node *node, const double point[3]) {
+    return enf_dot(node->normal, point) - node->offset;
+}
+
+static bool push_corner(slicer *slicer, const double corner[3]) {
+    if (!enf_array_reserve(slicer->stack, slicer->stack_capacity, slicer->stack_count + 1)) return false;
+    memcpy(slicer->stack[slicer->stack_count++], corner, sizeof *slicer->stack);
+    return true;
+}
+
+/// Where the ways between corners on either side cross the plane; its hull is the cut through the body.
+static bool find_cap(slicer *slicer, const enf_air_node *node, const body *body, int32_t *made) {
+    double tolerance = slicer->tree->tolerance;
+    int32_t count = 0;
+    for (int32_t i = 0; i < body->count; i++) {
+        double height = height_above(node, slicer->stack[body->first + (size_t)i]);
+        if (height <= tolerance) continue;
+        for (int32_t k = 0; k < body->count; k++) {
+            const double *a = slicer->stack[body->first + (size_t)i],
+                         *b = slicer->stack[body->first + (size_t)k];
+            double other = height_above(node, b);
+            if (other >= -tolerance) continue;
+            if (!enf_array_reserve(slicer->cap, slicer->cap_capacity, 3 * (size_t)(count + 1) + 1))
+                return false;
+            for (int axis = 0; axis < 3; axis++)
+                slicer->cap[count][axis] = a[axis] + height / (height - other) * (b[axis] - a[axis]);
+            count++;
+        }
+    }
+    *made = enf_flat_hull(slicer->cap, count, node->normal, slicer->cap + count);
+    memmove(slicer->cap, slicer->cap + count, (size_t)*made * sizeof *slicer->cap);
+    return true;
+}
+
+/// Pushes what is in front (side 1) or behind (side -1) of the plane.
+static bool push_half(slicer *slicer, const enf_air_node *node, const body *whole, double side, int32_t cap,
+                      body *half) {
+    *half = (body){.first = slicer->stack_count, .is_thin = whole->is_thin};
+    for (int32_t i = 0; i < whole->count; i++) {
+        const double corner[3] = {slicer->stack[whole->first + (size_t)i][0],
+                                  slicer->stack[whole->first + (size_t)i][1],
+                                  slicer->stack[whole->first + (size_t)i][2]};
+        if (side * height_above(node, corner) < -slicer->tree->tolerance) continue;
+        if (!push_corner(slicer, corner)) return false;
+    }
+    for (int32_t i = 0; i < cap; i++)
+        if (!push_corner(slicer, slicer->cap[i])) return false;
+    half->count = (int32_t)(slicer->stack_count - half->first);
+    return true;
+}
+
+static bool put_piece(slicer *slicer, int32_t leaf, const body *body) {
+    if (!enf_array_reserve(slicer->pieces, slicer->piece_capacity, slicer->piece_count + 1) ||
+        !enf_array_reserve(slicer->corners, slicer->corner_capacity, slicer->corner_count + body->count))
+        return false;
+    slicer->pieces[slicer->piece_count++] = (piece){.leaf = leaf,
+                                                    .cell = slicer->cell,
+                                                    .first = slicer->corner_count,
+                                                    .count = body->count,
+                                                    .is_thin = body->is_thin};
+    memcpy(slicer->corners + slicer->corner_count, slicer->stack + body->first,
+           (size_t)body->count * sizeof *slicer->corners);
+    slicer->corner_count += body->count;
+    return true;
+}
+
+static bool sink(slicer *slicer, int32_t at, const body *body);
+
+/// On both sides of the plane: cuts the body, and goes on with both halves.
+static bool cut(slicer *slicer, int32_t at, const body *whole) {
+    const enf_air_node *node = &slicer->tree->nodes[at];
+    size_t kept = slicer->stack_count;
+    body halves[2];
+    int32_t cap;
+    bool good = find_cap(slicer, node, whole, &cap) && push_half(slicer, node, whole, -1, cap, &halves[0]) &&
+                push_half(slicer, node, whole, 1, cap, &halves[1]);
+    for (int side = 0; good && side < 2; side++) good = sink(slicer, node->child[side], &halves[side]);
+    slicer->stack_count = kept;
+    return good;
+}
+
+/// Takes the body down the tree.
+static bool sink(slicer *slicer, int32_t at, const body *given) {
+    body body = *given;
+    while (at >= 0) {
+        const enf_air_node *node = &slicer->tree->nodes[at];
+        bool is_front = false, is_back = false;
+        for (int32_t i = 0; i < body.count; i++) {
+            double height = height_above(node, slicer->stack[body.first + (size_t)i]);
+            is_front = is_front || height > slicer->tree->tolerance;
+            is_back = is_back || height < -slicer->tree->tolerance;
+        }
+        if (is_front && is_back) return cut(slicer, at, &body);
+        if (!is_front && !is_back) {
+            body.is_thin = true;
+            if (!sink(slicer, node->child[0], &body)) return false;
+        }
+        at = node->child[is_front || !is_back];
+    }
+    return put_piece(slicer, -1 - at, &body);
+}
+
+static int compare_points(const void *a, const void *b) {
+    return memcmp(a, b, 3 * sizeof(double));
+}
+
+/// The corners of a fine cell, each once, as the only body of the stack.
+static bool take_fine_cell(slicer *slicer, const enf_file_view *view, int32_t fine, int32_t **vertices,
+                           size_t *capacity, body *body) {
+    int32_t count = 0;
+    for (int32_t k = view->fine_facet[fine]; k < view->fine_facet[fine + 1]; k++) {
+        const int64_t *offset = &view->facet_offset[view->fine_facets[k]];
+        if (!enf_array_reserve(*vertices, *capacity, count + offset[1] - offset[0])) return false;
+        for (int64_t i = offset[0]; i < offset[1]; i++) {
+            int32_t vertex = view->facet_corners[i].vertex, seen = 0;
+            while (seen < count && (*vertices)[seen] != vertex) seen++;
+            if (seen == count) (*vertices)[count++] = vertex;
+        }
+    }
+    slicer->stack_count = 0;
+    for (int32_t i = 0; i < count; i++) {
+        double corner[3];
+        enf_view_to_world(view, view->vertex_position[(*vertices)[i]], corner);
+        if (!push_corner(slicer, corner)) return false;
+    }
+    *body = (struct body){.count = count};
+    return true;
+}
+
+static bool slice_all(slicer *slicer, const enf_file_view *view) {
+    int32_t *vertices = NULL;
+    size_t capacity = 0;
+    bool good = true;
+    int32_t root = slicer->tree->node_count > 0 ? 0 : -1;
+    for (int32_t fine = 0; good && fine < view->fine_count; fine++) {
+        body body;
+        slicer->cell = view->fine_cell[fine];
+        if (slicer->cell < 0) continue;
+        good = take_fine_cell(slicer, view, fine, &vertices, &capacity, &body) && sink(slicer, root, &body);
+    }
+    free(vertices);
+    return good;
+}
+
+// ---------------------------------------------------------------------------------------------- parts
+
+void enf_bodies_free(enf_bodies *parts) {
+    free(parts->cell_first);
+    free(parts->owner);
+    free(parts->corner_first);
+    free(parts->corners);
+    *parts = (enf_bodies){0};
+}
+
+static int compare_pieces(const void *a, const void *b) {
+    const piece *one = a, *other = b;
+    if (one->leaf != other->leaf) return one->leaf < other->leaf ? -1 : 1;
+    if (one->cell != other->cell) return one->cell < other->cell ? -1 : 1;
+    return one->first < other->first ? -1 : one->first > other->first;
+}
+
+/// Drops the thin pieces of leafs that have no others: those are rock.
+static void drop_thin(slicer *slicer) {
+    int32_t kept = 0;
+    for (int32_t i = 0, end; i < slicer->piece_count; i = end) {
+        bool is_air = false;
+        for (end = i; end < slicer->piece_count && slicer->pieces[end].leaf == slicer->pieces[i].leaf; end++)
+            is_air = is_air || !slicer->pieces[end].is_thin;
+        for (int32_t k = i; is_air && k < end; k++) slicer->pieces[kept++] = slicer->pieces[k];
+    }
+    slicer->piece_count = kept;
+}
+
+/// Copies the corners of pieces i..end-1, each once.
+static void put_corners(enf_bodies *parts, const slicer *slicer, int32_t begin, int32_t end) {
+    int32_t first = parts->corner_first[parts->count], made = first;
+    for (int32_t i = begin; i < end; i++) {
+        memcpy(parts->corners + made, slicer->corners + slicer->pieces[i].first,
+               (size_t)slicer->pieces[i].count * sizeof *parts->corners);
+        made += slicer->pieces[i].count;
+    }
+    qsort(parts->corners + first, (size_t)(made - first), sizeof *parts->corners, compare_points);
+    int32_t kept = first;
+    for (int32_t i = first; i < made; i++)
+        if (i == first || compare_points(parts->corners[i], parts->corners[kept - 1]) != 0)
+            memmove(parts->corners[kept++], parts->corners[i], sizeof *parts->corners);
+    parts->corner_first[parts->count + 1] = kept;
+}
+
+static bool join_pieces(enf_air_parts *air, slicer *slicer, int32_t cell_count) {
+    enf_bodies *parts = &air->bodies;
+    size_t pieces = (size_t)slicer->piece_count;
+    size_t leafs = (size_t)slicer->tree->leaf_count;
+    air->leaf_of = enf_array_new(leafs, sizeof *air->leaf_of);
+    parts->cell_first = enf_array_new(leafs + 1, sizeof *parts->cell_first);
+    parts->owner = enf_array_new(pieces, sizeof *parts->owner);
+    parts->corner_first = enf_array_new(pieces + 1, sizeof *parts->corner_first);
+    parts->corners = enf_array_new((size_t)slicer->corner_count, sizeof *parts->corners);
+    air->lost = enf_array_new((size_t)cell_count, sizeof *air->lost);
+    bool *found = enf_array_zeroed((size_t)cell_count, sizeof *found);
+    bool good = air->leaf_of && parts->cell_first && parts->owner && parts->corner_first && parts->corners &&
+                air->lost && found;
+    if (good) parts->corner_first[0] = 0;
+    for (int32_t leaf = 0, i = 0; good && leaf < slicer->tree->leaf_count; leaf++) {
+        bool is_air = i < slicer->piece_count && slicer->pieces[i].leaf == leaf;
+        air->leaf_of[leaf] = is_air ? parts->cell_count++ : -1;
+        if (is_air) parts->cell_first[air->leaf_of[leaf]] = parts->count;
+        for (int32_t end; i < slicer->piece_count && slicer->pieces[i].leaf == leaf; i = end) {
+            const piece *piece = &slicer->pieces[i];
+            for (end = i; end < slicer->piece_count && slicer->pieces[end].leaf == leaf &&
+                          slicer->pieces[end].cell == piece->cell;)
+                end++;
+            put_corners(parts, slicer, i, end);
+            parts->owner[parts->count++] = piece->cell;
+            found[piece->cell] = true;
+        }
+    }
+    if (good) parts->cell_first[parts->cell_count] = parts->count;
+    for (int32_t c = 0; good && c < cell_count; c++)
+        if (!found[c]) air->lost[air->lost_count++] = c;
+    free(found);
+    return good;
+}
+
+enf_status enf_air_parts_make(enf_air_parts *air, const enf_air_tree *tree, const enf_file_view *view,
+                              enf_error *error) {
+    slicer slicer = {.tree = tree};
+    *air = (enf_air_parts){0};
+    bool good = slice_all(&slicer, view);
+    if (good) {
+        qsort(slicer.pieces, (size_t)slicer.piece_count, sizeof *slicer.pieces, compare_pieces);
+        drop_thin(&slicer);
+        good = join_pieces(air, &slicer, view->cell_count);
+    }
+    free(slicer.stack);
+    free(slicer.cap);
+    free(slicer.pieces);
+    free(slicer.corners);
+    return good ? ENF_OK : enf_fail_memory(error, "the parts of cells");
+}
+
+void enf_air_parts_free(enf_air_parts *air) {
+    enf_bodies_free(&air->bodies);
+    free(air->leaf_of);
+    free(air->lost);
+    *air = (enf_air_parts){0};
+}

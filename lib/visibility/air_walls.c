@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "visibility/air_walls.h"
+
+#include "base/array.h"
+#include "format/frame.h"
+#include "visibility/flat_hull.h"
+#include "visibility/window.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COVER_SEALED = -2 };
+
+bool enf_walls_add(enf_walls *walls, const enf_wall *like, const double (*corners)[3], int32_t count) {
+    if (!enf_array_reserve(walls->walls, walls->wall_capacity, walls->count + 1) ||
+        !enf_array_reserve(walls->corners, walls->corner_capacity, walls->corner_count + count))
+        return false;
+    enf_wall *wall = &walls->walls[walls->count++];
+    *wall = *like;
+    wall->first = walls->corner_count;
+    wall->count = count;
+    memcpy(walls->corners + wall->first, corners, (size_t)count * sizeof *corners);
+    walls->corner_count += count;
+    return true;
+}
+
+void enf_walls_free(enf_walls *walls) {
+    free(walls->walls);
+    free(walls->corners);
+    *walls = (enf_walls){0};
+}
+
+/// The pieces of closed facets that kept cells touch, sorted by occluder.
+typedef struct closed {
+    int32_t *first;  ///< mesh_polygon_count + 1 offsets into pieces
+    int32_t *pieces; ///< then the sealed ones
+    int32_t sealed;  ///< how many of those
+    double (*corners)[3];
+    size_t capacity;
+} closed;
+
+/// How many of the two fine cells at a piece are kept.
+static int count_kept(const enf_file_view *view, int32_t piece) {
+    const int32_t *fine = view->facet_fine[view->piece_facet[piece]];
+    return (fine[0] >= 0 && view->fine_cell[fine[0]] >= 0) + (fine[1] >= 0 && view->fine_cell[fine[1]] >= 0);
+}
+
+static bool sort_pieces(closed *closed, const enf_file_view *view) {
+    int32_t polygons = view->mesh_polygon_count;
+    closed->first = enf_array_zeroed((size_t)polygons + 2, sizeof *closed->first);
+    closed->pieces = enf_array_new((size_t)view->piece_count, sizeof *closed->pieces);
+    if (!closed->first || !closed->pieces) return false;
+    int32_t *next = closed->first + 1; // one ahead while counting: it becomes the offsets themselves
+    for (int32_t p = 0; p < view->piece_count; p++)
+        if (view->piece_cover[p] >= 0 && count_kept(view, p) > 0)
+            next[view->cover_polygon[view->piece_cover[p]] + 1]++;
+    for (int32_t i = 0; i < polygons; i++) next[i + 1] += next[i];
+    int32_t sealed = next[polygons];
+    for (int32_t p = 0; p < view->piece_count; p++) {
+        if (count_kept(view, p) == 0) continue;
+        if (view->piece_cover[p] >= 0) closed->pieces[next[view->cover_polygon[view->piece_cover[p]]]++] = p;
+        if (view->piece_cover[p] == COVER_SEALED) closed->pieces[sealed + closed->sealed++] = p;
+    }
+    return true;
+}
+
+/// Appends the corners of a piece, or of its facet if it has none of its own.
+static bool take_corners(closed *closed, const enf_file_view *view, int32_t piece, int32_t *count) {
+    const int64_t *offset = &view->piece_offset[piece];
+    const enf_file_corner *corners = view->piece_corners;
+    if (offset[0] == offset[1]) {
+        offset = &view->facet_offset[view->piece_facet[piece]];
+        corners = view->facet_corners;
+    }
+    if (!enf_array_reserve(closed->corners, closed->capacity, *count + offset[1] - offset[0])) return false;
+    for (int64_t i = offset[0]; i < offset[1]; i++)
+        enf_view_to_world(view, view->vertex_position[corners[i].vertex], closed->corners[(*count)++]);
+    return true;
+}
+
+/// The plane through three points of the grid; false if rounding leaves none.
+static bool find_plane(const enf_file_view *view, const int32_t points[3], enf_wall *wall) {
+    double at[3][3], normal[3];
+    for (int i = 0; i < 3; i++) enf_view_to_world(view, view->points[points[i]], at[i]);
+    for (int a = 0; a < 3; a++) {
+        int u = (a + 1) % 3, v = (a + 2) % 3;
+        normal[a] =
+            (at[1][u] - at[0][u]) * (at[2][v] - at[0][v]) - (at[1][v] - at[0][v]) * (at[2][u] - at[0][u]);
+    }
+    double length = sqrt(enf_dot(normal, normal));
+    if (!(length > 0)) return false;
+    for (int a = 0; a < 3; a++) wall->normal[a] = normal[a] / length;
+    wall->offset = enf_dot(wall->normal, at[0]);
+    return true;
+}
+
+/// Adds the hull of the pieces of one occluder, or of one sealed piece.
+static bool add_wall(enf_walls *walls, closed *closed, const enf_file_view *view, const int32_t points[3],
+                     int32_t begin, int32_t end) {
+    enf_wall wall = {0};
+    int32_t count = 0;
+    for (int32_t i = begin; i < end; i++) {
+        if (!take_corners(closed, view, closed->pieces[i], &count)) return false;
+        wall.has_air_behind = wall.has_air_behind || count_kept(view, closed->pieces[i]) == 2;
+    }
+    if (count == 0 || !find_plane(view, points, &wall)) return true;
+    if (!enf_array_reserve(closed->corners, closed->capacity, 3 * count + 1)) return false;
+    int32_t made = enf_flat_hull(closed->corners, count, wall.normal, closed->corners + count);
+    return made < 3 || enf_walls_add(walls, &wall, (const double(*)[3])(closed->corners + count), made);
+}
+
+enf_status enf_air_walls_make(enf_walls *walls, const enf_file_view *view, enf_error *error) {
+    closed closed = {0};
+    *walls = (enf_walls){0};
+    bool good = sort_pieces(&closed, view);
+    for (int32_t i = 0; good && i < view->mesh_polygon_count; i++)
+        good =
+            add_wall(walls, &closed, view, view->mesh_polygon_plane[i], closed.first[i], closed.first[i + 1]);
+    for (int32_t i = 0; good && i < closed.sealed; i++) {
+        int32_t at = closed.first[view->mesh_polygon_count] + i;
+        int32_t plane = view->facet_plane[view->piece_facet[closed.pieces[at]]];
+        good = add_wall(walls, &closed, view, view->planes[plane], at, at + 1);
+    }
+    free(closed.first);
+    free(closed.pieces);
+    free(closed.corners);
+    return good ? ENF_OK : enf_fail_memory(error, "the walls");
+}

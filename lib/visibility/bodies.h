@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts: bodies in the cells of a portal graph. What is asked for is which of them see each other, where the
+// cells are only the way.
+#ifndef ENF_VISIBILITY_BODIES_H
+#define ENF_VISIBILITY_BODIES_H
+
+#include "enfilade/base.h"
+
+typedef struct enf_bodies {
+    int32_t count;
+    int32_t cell_count;    ///< of the graph
+    int32_t *cell_first;   ///< cell_count + 1 offsets: the parts in each cell; every cell has one or more
+    int32_t *owner;        ///< what each is a part of; ascending within a cell
+    int32_t *corner_first; ///< count + 1 offsets into corners
+    double (*corners)[3];  ///< the hull of a part's corners holds the part
+} enf_bodies;
+
+void enf_bodies_free(enf_bodies *parts);
+
+#endif

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "visibility/world_visibility.h"
+
+#include <string.h>
+
+/// What the leafs' visible sets and their beams leave of a pair of leafs, as pairs of the cells in them.
+static void join_leafs(enf_pvs *cells, const enf_visibility *found, const enf_bodies *parts, int32_t leaf,
+                       int32_t other) {
+    const enf_bits *met = found->met.words ? &found->met : NULL;
+    for (int32_t a = parts->cell_first[leaf]; a < parts->cell_first[leaf + 1]; a++) {
+        if (met && !enf_bit_get(enf_bits_row(met, other), a)) continue;
+        for (int32_t b = parts->cell_first[other]; b < parts->cell_first[other + 1]; b++) {
+            if (met && !enf_bit_get(enf_bits_row(met, leaf), b)) continue;
+            enf_pvs_set(cells, parts->owner[a], parts->owner[b]);
+            enf_pvs_set(cells, parts->owner[b], parts->owner[a]);
+        }
+    }
+}
+
+static void see_neighbours(enf_pvs *cells, const enf_file_view *view) {
+    for (int32_t i = 0; i < view->portal_count; i++)
+        enf_pvs_set(cells, view->portals[i].from, view->portals[i].to);
+}
+
+/// Cells too thin to be in a leaf see what their neighbours see, as all that comes to them comes through
+/// those. Neighbours that are lost themselves have it from theirs, so it is done until nothing changes.
+static void see_for_lost(enf_pvs *cells, const enf_world_air *air, const enf_file_view *view) {
+    for (bool changes = true; changes;) {
+        changes = false;
+        for (int32_t i = 0; i < air->parts.lost_count; i++) {
+            const enf_file_cell *cell = &view->cells[air->parts.lost[i]];
+            uint64_t *row = enf_pvs_row(cells, air->parts.lost[i]);
+            for (int32_t k = 0; k < cell->portal_count; k++) {
+                int32_t to = view->portals[view->cell_portals[cell->portal_first + k]].to;
+                for (size_t w = 0; w < cells->row_words; w++) {
+                    uint64_t more = enf_pvs_row(cells, to)[w] & ~row[w];
+                    row[w] |= more;
+                    changes = changes || more;
+                }
+            }
+        }
+    }
+    for (int32_t i = 0; i < air->parts.lost_count; i++)
+        for (int32_t other = 0; other < cells->cell_count; other++)
+            if (enf_pvs_get(cells, air->parts.lost[i], other)) enf_pvs_set(cells, other, air->parts.lost[i]);
+}
+
+static enf_status find_cells(enf_visibility *found, const enf_world_air *air, const enf_file_view *view,
+                             enf_error *error) {
+    enf_pvs cells;
+    enf_status status = enf_pvs_new(&cells, view->cell_count, error);
+    if (status) return status;
+    for (int32_t leaf = 0; leaf < found->pvs.cell_count; leaf++)
+        for (int32_t other = leaf; other < found->pvs.cell_count; other++)
+            if (enf_pvs_get(&found->pvs, leaf, other))
+                join_leafs(&cells, found, &air->parts.bodies, leaf, other);
+    see_neighbours(&cells, view);
+    see_for_lost(&cells, air, view);
+    enf_pvs_free(&found->pvs);
+    found->pvs = cells;
+    return ENF_OK;
+}
+
+enf_status enf_world_visibility_run(enf_visibility *visibility, const enf_world_air *air,
+                                    const enf_file_view *view, const enf_visibility_options *options,
+                                    enf_error *error) {
+    enf_visibility_options own = *options;
+    own.want_witnesses = false;
+    own.bodies = air->is_partitioned ? &air->parts.bodies : NULL;
+    enf_status status = enf_visibility_run(visibility, &air->graph, &own, error);
+    if (!status && air->is_partitioned) status = find_cells(visibility, air, view, error);
+    return status;
+}
