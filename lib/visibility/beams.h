@@ -11,14 +11,15 @@
 #define ENF_VISIBILITY_BEAMS_H
 
 #include "visibility/bits.h"
+#include "visibility/follows.h"
 #include "visibility/shapes.h"
 
 /// Scratch memory of one thread.
 typedef struct enf_beams enf_beams;
 
 /// Null without memory. What they are made from is shared and must stay. Of the pairs of portals in `facing`
-/// no others are tried.
-enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing);
+/// no others are tried; `follows` are those of them that can come right after each other.
+enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const enf_follows *follows);
 void enf_beams_free(enf_beams *beams);
 
 /// Casts the beams of a directed portal. *portals receives the portals that they reach, in the order in which

@@ -32,13 +32,13 @@ typedef struct casting {
     cast_result *results; ///< per cell
     int64_t *cost;        ///< per cell: portals that face its own
     bool *begun;          ///< per cell
+    enf_follows follows;
 } casting;
 
 static const enf_portal_graph *graph_of(const casting *casting) {
     return casting->cast->sight->shapes->graph;
 }
 
-/// Sends a line through the middle of the portal and of what its beams reach of another; notes which cells it
 /// Sends a line through the source, and notes which cells it comes through after it.
 static bool send_line(const casting *casting, caster *caster, int32_t source, const enf_line *line) {
     const enf_portal_graph *graph = graph_of(casting);
@@ -67,13 +67,14 @@ static void lean(const double middle[3], const double corner[3], double point[3]
 static bool send_lines(const casting *casting, caster *caster, int32_t source, int32_t target) {
     const enf_shapes *shapes = casting->cast->sight->shapes;
     const uint64_t *seen = enf_bits_row(&casting->sightings->seen, enf_portal_from(shapes->graph, source));
-    const double(*corners)[3] = enf_shape_outline(shapes, source >> 1),
+    const double(*corners)[3] = enf_shape_corners(shapes, source >> 1),
           *middle = shapes->shapes[source >> 1].centre;
     int32_t count = shapes->shapes[source >> 1].count, cell = enf_portal_to(shapes->graph, target);
     enf_window window;
     enf_line line;
-    double goal[3];
+    double goal[3], corner[3];
     enf_beams_window(caster->beams, target, &window);
+    const enf_outline outline = enf_window_outline(&window);
     enf_window_middle(&window, goal);
     memcpy(line.from, middle, sizeof line.from);
     memcpy(line.to, goal, sizeof line.to);
@@ -81,7 +82,8 @@ static bool send_lines(const casting *casting, caster *caster, int32_t source, i
         if (!send_line(casting, caster, source, &line)) return false;
         if (enf_bit_get(seen, cell)) break;
         lean(middle, corners[i % count], line.from);
-        lean(goal, window.corners[(i + i / count) % window.count], line.to);
+        enf_outline_corner(&outline, (i + i / count) % window.count, corner);
+        lean(goal, corner, line.to);
     }
     return true;
 }
@@ -158,6 +160,11 @@ static bool decode_cell(void *user, int32_t cell, enf_reader *reader) {
 
 // ---------------------------------------------------------------------------------------------- all
 
+static bool faces(const void *user, int32_t portal, int32_t next) {
+    const enf_bits *facing = user;
+    return enf_bit_get(enf_bits_row(facing, portal), next);
+}
+
 static bool make_casting(casting *casting, int threads) {
     const enf_portal_graph *graph = graph_of(casting);
     size_t cells = (size_t)graph->cell_count;
@@ -166,10 +173,12 @@ static bool make_casting(casting *casting, int threads) {
     casting->begun = enf_array_zeroed(cells, sizeof *casting->begun);
     casting->casters = enf_array_zeroed((size_t)threads, sizeof *casting->casters);
     if (!enf_bits_new(&casting->cast->beams, 2 * graph->opening_count, 2 * graph->opening_count) ||
-        !casting->results || !casting->cost || !casting->begun || !casting->casters)
+        !enf_follows_make(&casting->follows, graph, faces, casting->cast->facing) || !casting->results ||
+        !casting->cost || !casting->begun || !casting->casters)
         return false;
     for (int i = 0; i < threads; i++) {
-        casting->casters[i].beams = enf_beams_new(casting->cast->sight->shapes, casting->cast->facing);
+        casting->casters[i].beams =
+            enf_beams_new(casting->cast->sight->shapes, casting->cast->facing, &casting->follows);
         if (!casting->casters[i].beams) return false;
     }
     return true;
@@ -181,6 +190,7 @@ static void free_casting(casting *casting, int threads) {
     free(casting->results);
     free(casting->cost);
     free(casting->begun);
+    enf_follows_free(&casting->follows);
 }
 
 static void find_cost(casting *casting) {
