@@ -37,6 +37,7 @@ struct enf_beams {
     const enf_shapes *shapes;
     const enf_bits *facing;
     const enf_follows *follows;
+    uint64_t *open; ///< a row of portals: those that the source faces and that are not reached as a whole
     beam *beams;
     kept_window *kept; ///< those of this cast come first
     int32_t kept_count;
@@ -55,17 +56,19 @@ enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const
     beams->shapes = shapes;
     beams->facing = facing;
     beams->follows = follows;
+    beams->open = enf_array_new(facing->row_words, sizeof *beams->open);
     beams->beams = enf_array_zeroed(portals, sizeof *beams->beams);
     beams->kept = enf_array_new(portals, sizeof *beams->kept);
     beams->reached = enf_array_new(portals, sizeof *beams->reached);
     beams->heap = enf_array_new(portals, sizeof *beams->heap);
-    if (beams->beams && beams->kept && beams->reached && beams->heap) return beams;
+    if (beams->open && beams->beams && beams->kept && beams->reached && beams->heap) return beams;
     enf_beams_free(beams);
     return NULL;
 }
 
 void enf_beams_free(enf_beams *beams) {
     if (!beams) return;
+    free(beams->open);
     free(beams->beams);
     free(beams->kept);
     free(beams->reached);
@@ -90,7 +93,16 @@ static bool is_nearer(const enf_beams *beams, const waiting *a, const waiting *b
     return (a->portal & 1) < (b->portal & 1);
 }
 
+/// Is there anything to look at behind a portal?
+static bool is_open_behind(const enf_beams *beams, int32_t portal) {
+    const enf_follows *follows = beams->follows;
+    for (int32_t k = follows->first[portal]; k < follows->first[portal + 1]; k++)
+        if (enf_bit_get(beams->open, follows->portals[k])) return true;
+    return false;
+}
+
 static void push(enf_beams *beams, int32_t source, int32_t portal) {
+    if (!is_open_behind(beams, portal)) return;
     const double *centre = beams->shapes->shapes[portal >> 1].centre;
     const waiting new = {enf_shape_height(beams->shapes, source, centre), portal};
     int32_t at = beams->heap_count++;
@@ -129,15 +141,18 @@ void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window
     enf_window_take(window, &outline);
 }
 
-static void keep(enf_beams *beams, beam *beam, const enf_window *window, enf_remains remains) {
+static void keep(enf_beams *beams, int32_t portal, const enf_window *window, enf_remains remains) {
+    beam *beam = &beams->beams[portal];
     beam->is_whole =
         remains == ENF_REMAINS_WHOLE || window->count > KEPT_MOST || beam->growths >= GROWTHS_MOST;
-    if (beam->is_whole) return;
+    if (beam->is_whole) {
+        enf_bit_clear(beams->open, portal);
+        return;
+    }
     if (beam->kept < 0) beam->kept = beams->kept_count++;
     beam->count = (int16_t)window->count;
-    const size_t places = (size_t)window->count + ENF_OUTLINE_MORE;
     for (int axis = 0; axis < 3; axis++)
-        memcpy(beams->kept[beam->kept].at[axis], window->at[axis], places * sizeof(double));
+        enf_outline_copy(beams->kept[beam->kept].at[axis], window->at[axis], window->count);
 }
 
 /// A portal is reached for the first time.
@@ -145,7 +160,8 @@ static void reach(enf_beams *beams, int32_t source, int32_t portal, enf_remains 
     beam *beam = &beams->beams[portal];
     beam->kept = -1;
     beam->growths = 0;
-    keep(beams, beam, &beams->window, remains);
+    keep(beams, portal, &beams->window, remains);
+    beam->state = BEAM_REACHED;
     beams->reached[beams->reached_count++] = portal;
     push(beams, source, portal);
 }
@@ -161,7 +177,7 @@ static void merge(enf_beams *beams, int32_t source, int32_t portal, enf_remains 
         if (!enf_hull_extend(merged, &beams->window, shape->axes, beams->shapes->tolerance)) return;
         beam->growths++;
     }
-    keep(beams, beam, merged, remains);
+    keep(beams, portal, merged, remains);
     if (beam->state == BEAM_REACHED) push(beams, source, portal);
 }
 
@@ -169,15 +185,12 @@ static void merge(enf_beams *beams, int32_t source, int32_t portal, enf_remains 
 
 /// From one portal into its cell and out of the others.
 static void spread(enf_beams *beams, int32_t source, int32_t via) {
-    const uint64_t *row = enf_bits_row(beams->facing, source);
     const enf_follows *follows = beams->follows;
     bool ready = via == source;
     if (ready) enf_separators_begin(&beams->separators, beams->shapes, source);
     for (int32_t k = follows->first[via]; k < follows->first[via + 1]; k++) {
         int32_t next = follows->portals[k];
-        if (!enf_bit_get(row, next)) continue;
-        bool is_new = beams->beams[next].state == BEAM_NONE;
-        if (!is_new && beams->beams[next].is_whole) continue; // nothing to add
+        if (!enf_bit_get(beams->open, next)) continue;
         if (!ready) {
             const enf_outline from = enf_shape_outline(beams->shapes, source >> 1),
                               to = outline_of(beams, via);
@@ -186,7 +199,7 @@ static void spread(enf_beams *beams, int32_t source, int32_t via) {
         }
         enf_remains remains = enf_separators_cut(&beams->separators, beams->shapes, next, &beams->window);
         if (remains == ENF_REMAINS_NOTHING) continue;
-        if (is_new)
+        if (beams->beams[next].state == BEAM_NONE)
             reach(beams, source, next, remains);
         else
             merge(beams, source, next, remains);
@@ -196,6 +209,7 @@ static void spread(enf_beams *beams, int32_t source, int32_t via) {
 int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals) {
     for (int32_t i = 0; i < beams->reached_count; i++) beams->beams[beams->reached[i]].state = BEAM_NONE;
     beams->reached_count = beams->heap_count = beams->kept_count = 0;
+    memcpy(beams->open, enf_bits_row(beams->facing, source), beams->facing->row_words * sizeof(uint64_t));
     spread(beams, source, source);
     while (beams->heap_count > 0) {
         beams->visits++;

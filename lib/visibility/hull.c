@@ -64,7 +64,7 @@ static void make_anew(enf_window *window, const enf_window *other, const int32_t
 
 // ---------------------------------------------------------------------------------------------- one by one
 
-enum { EDGES_MOST = 60 }; ///< of windows that corners are added to one by one: sets of edges are 64-bit words
+enum { EDGES_MOST = 31 }; ///< of windows that corners are added to one by one: two rounds are a 64-bit word
 
 /// The edges of a window, as the coordinate plane has them.
 typedef struct edges {
@@ -117,19 +117,18 @@ static void find_sides(const enf_window *window, double u, double v, const int32
     }
 }
 
-/// A run of edges, round the end perhaps, that holds all of some, and of others what is next to them. False
-/// if there is no such run, or if nothing else is left. *first and *after are the edges that it begins and
-/// ends at.
+/// A run of edges, round the end perhaps, that holds all of some, and of others what is next to them. False if
+/// there is no such run, or if nothing else is left. *first and *after are the edges that it begins and ends at.
 static bool find_run(uint64_t some, uint64_t others, int32_t count, int32_t *first, int32_t *after) {
-    const uint64_t all = (UINT64_C(1) << count) - 1;
-    int32_t begin = __builtin_ctzll(some), end = begin;
-    uint64_t run = 0;
-    for (; others >> end & 1 && !(run >> end & 1); end = end + 1 < count ? end + 1 : 0)
-        run |= UINT64_C(1) << end;
-    for (int32_t i = begin; i = i ? i - 1 : count - 1, others >> i & 1 && !(run >> i & 1); begin = i)
-        run |= UINT64_C(1) << i;
-    *first = begin, *after = end;
-    return !(some & ~run) && run != all;
+    const uint64_t all = (UINT64_C(1) << count) - 1, twice = others | others << count;
+    const int32_t one = __builtin_ctzll(some), ahead = __builtin_ctzll(~(twice >> one)),
+                  back = __builtin_clzll(~(twice << (64 - count - one))), length = back + ahead;
+    if (length >= count) return false;
+    const int32_t begin = one >= back ? one - back : one - back + count;
+    const uint64_t run = ((UINT64_C(1) << length) - 1) << begin;
+    *first = begin;
+    *after = begin + length < count ? begin + length : begin + length - count;
+    return !(some & ~(run | run >> count) & all);
 }
 
 /// Puts a point in the place of a run of edges: between the corner where it begins, and that where it ends.

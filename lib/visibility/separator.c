@@ -11,7 +11,7 @@
 /// are not further from those corners than 2^-14 of the window's size, or so.
 static const double band_tolerances = 0x1p14;
 
-/// Of the size of the world: spheres nearer to each other than `near` are looked at closely; contacts may be
+/// Of the size of the world: what is nearer to each other than `near` are looked at closely; contacts may be
 /// nearer than they look by `contact_error`, as corners within the band count for all that is near them.
 static const double near = 0x1p-12, contact_error = 0x1p-30;
 
@@ -192,11 +192,19 @@ static double find_span(const enf_shapes *shapes, int32_t portal, int32_t other)
     return span;
 }
 
+/// How far apart two openings are at least, going by their spheres and by their boxes.
 static double find_gap(const enf_shapes *shapes, int32_t portal, int32_t other) {
     const enf_shape *one = &shapes->shapes[portal >> 1], *two = &shapes->shapes[other >> 1];
-    double way[3];
-    for (int axis = 0; axis < 3; axis++) way[axis] = one->centre[axis] - two->centre[axis];
-    return sqrt(enf_dot(way, way)) - one->radius - two->radius;
+    double way[3], apart[3];
+    for (int axis = 0; axis < 3; axis++) {
+        way[axis] = one->centre[axis] - two->centre[axis];
+        const double between =
+            fabs(one->middle[axis] - two->middle[axis]) - one->half[axis] - two->half[axis];
+        apart[axis] = between > 0 ? between : 0;
+    }
+    const double spheres = sqrt(enf_dot(way, way)) - one->radius - two->radius,
+                 boxes = sqrt(enf_dot(apart, apart));
+    return spheres > boxes ? spheres : boxes;
 }
 
 /// Fills up the last four.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "visibility/window.h"
 
-#include <string.h>
-
 void enf_window_copy(enf_window *window, const double (*corners)[3], int32_t count) {
     window->count = count;
     for (int axis = 0; axis < 3; axis++) {
@@ -12,9 +10,8 @@ void enf_window_copy(enf_window *window, const double (*corners)[3], int32_t cou
 }
 
 void enf_window_take(enf_window *window, const enf_outline *outline) {
-    const size_t places = (size_t)outline->count + ENF_OUTLINE_MORE;
     window->count = outline->count;
-    for (int axis = 0; axis < 3; axis++) memcpy(window->at[axis], outline->at[axis], places * sizeof(double));
+    for (int axis = 0; axis < 3; axis++) enf_outline_copy(window->at[axis], outline->at[axis], outline->count);
 }
 
 void enf_window_middle(const enf_window *window, double middle[3]) {

@@ -8,9 +8,11 @@
 
 #include "enfilade/base.h"
 
+#include <string.h>
+
 enum {
     ENF_WINDOW_MOST = 96, ///< corners; outlines of openings have at most 64
-    ENF_OUTLINE_MORE = 4  ///< places after the last corner
+    ENF_OUTLINE_MORE = 4  ///< places after the last corner; there is room up to the next four
 };
 
 /// Corners of a convex polygon, wherever they are: coordinates along each axis by themselves, so that four
@@ -46,6 +48,11 @@ static inline void enf_outline_corner(const enf_outline *outline, int32_t index,
 /// Repeats the first corners after the last, in the coordinates along one axis.
 static inline void enf_outline_close(double *along, int32_t count) {
     for (int32_t i = 0; i < ENF_OUTLINE_MORE; i++) along[count + i] = along[i];
+}
+
+/// Copies the coordinates along one axis of an outline that is closed, to where there is room for as many.
+static inline void enf_outline_copy(double *to, const double *from, int32_t count) {
+    for (int32_t i = 0; i < count + ENF_OUTLINE_MORE; i += 4) memcpy(to + i, from + i, 4 * sizeof *to);
 }
 
 /// A window of these corners.
