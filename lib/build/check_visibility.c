@@ -66,7 +66,7 @@ static double next_share(uint64_t *seed) {
 /// A point in the opening: on the way from its middle to one of its edges.
 static void find_point(const enf_shapes *shapes, int32_t opening, uint64_t *seed, double point[3]) {
     const enf_shape *shape = &shapes->shapes[opening];
-    const double(*corners)[3] = enf_shape_outline(shapes, opening);
+    const double(*corners)[3] = enf_shape_corners(shapes, opening);
     int32_t corner = (int32_t)(next_share(seed) * shape->count), next = (corner + 1) % shape->count;
     double along = next_share(seed), out = next_share(seed);
     for (int axis = 0; axis < 3; axis++) {

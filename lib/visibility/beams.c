@@ -15,46 +15,62 @@ enum {
 
 typedef enum beam_state { BEAM_NONE, BEAM_REACHED, BEAM_WAITING } beam_state;
 
-/// What is known of one directed portal.
+/// What is known of one directed portal. There are many, looked at in no order: windows are elsewhere.
 typedef struct beam {
-    double depth; ///< of its centre above the source's plane: nearer ones go first
-    int32_t count;
-    uint8_t state, growths;
-    bool is_whole; ///< the window is the outline
-    double corners[KEPT_MOST][3];
+    int32_t kept;                    ///< its window; -1: none yet
+    int16_t count;                   ///< corners of the window
+    uint8_t state : 2, is_whole : 1; ///< the window is the outline
+    uint8_t growths;
 } beam;
+
+/// The corners of a window, as an outline's.
+typedef struct kept_window {
+    double at[3][KEPT_MOST + ENF_OUTLINE_MORE];
+} kept_window;
+
+typedef struct waiting {
+    double depth; ///< of its centre above the source's plane: nearer ones go first
+    int32_t portal;
+} waiting;
 
 struct enf_beams {
     const enf_shapes *shapes;
     const enf_bits *facing;
-    const enf_bodies *bodies; ///< or null
-    uint64_t *met;          ///< parts; or null
+    const enf_follows *follows;
+    uint64_t *open; ///< a row of portals: those that the source faces and that are not reached as a whole
     beam *beams;
+    kept_window *kept; ///< those of this cast come first
+    int32_t kept_count;
     int32_t *reached, reached_count;
-    int32_t *heap, heap_count; ///< portals that wait
+    waiting *heap; ///< portals that wait
+    int32_t heap_count;
     int64_t visits;
     enf_separators separators;
-    enf_window from, via, window, merged;
+    enf_window window, merged;
 };
 
-enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const enf_bodies *bodies) {
+enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const enf_follows *follows) {
     size_t portals = 2 * (size_t)shapes->graph->opening_count;
     enf_beams *beams = calloc(1, sizeof *beams);
     if (!beams) return NULL;
     beams->shapes = shapes;
     beams->facing = facing;
-    beams->bodies = bodies;
+    beams->follows = follows;
+    beams->open = enf_array_new(facing->row_words, sizeof *beams->open);
     beams->beams = enf_array_zeroed(portals, sizeof *beams->beams);
+    beams->kept = enf_array_new(portals, sizeof *beams->kept);
     beams->reached = enf_array_new(portals, sizeof *beams->reached);
     beams->heap = enf_array_new(portals, sizeof *beams->heap);
-    if (beams->beams && beams->reached && beams->heap) return beams;
+    if (beams->open && beams->beams && beams->kept && beams->reached && beams->heap) return beams;
     enf_beams_free(beams);
     return NULL;
 }
 
 void enf_beams_free(enf_beams *beams) {
     if (!beams) return;
+    free(beams->open);
     free(beams->beams);
+    free(beams->kept);
     free(beams->reached);
     free(beams->heap);
     free(beams);
@@ -67,30 +83,43 @@ int64_t enf_beams_visits(const enf_beams *beams) {
 // ---------------------------------------------------------------------------------------------- the heap
 
 /// A total order that does not depend on how portals are numbered: windows depend on it, a little.
-static bool is_nearer(const enf_beams *beams, int32_t a, int32_t b) {
-    double depth_a = beams->beams[a].depth, depth_b = beams->beams[b].depth;
-    if (depth_a != depth_b) return depth_a < depth_b;
+static bool is_nearer(const enf_beams *beams, const waiting *a, const waiting *b) {
+    if (a->depth != b->depth) return a->depth < b->depth;
     const enf_shape *shapes = beams->shapes->shapes;
     for (int axis = 0; axis < 3; axis++) {
-        double at_a = shapes[a >> 1].centre[axis], at_b = shapes[b >> 1].centre[axis];
+        double at_a = shapes[a->portal >> 1].centre[axis], at_b = shapes[b->portal >> 1].centre[axis];
         if (at_a != at_b) return at_a < at_b;
     }
-    return (a & 1) < (b & 1);
+    return (a->portal & 1) < (b->portal & 1);
 }
 
-static void push(enf_beams *beams, int32_t portal) {
+/// Is there anything to look at behind a portal?
+static bool is_open_behind(const enf_beams *beams, int32_t portal) {
+    const enf_follows *follows = beams->follows;
+    for (int32_t k = follows->first[portal]; k < follows->first[portal + 1]; k++)
+        if (enf_bit_get(beams->open, follows->portals[k])) return true;
+    return false;
+}
+
+static void push(enf_beams *beams, int32_t source, int32_t portal) {
+    if (!is_open_behind(beams, portal)) return;
+    const double *centre = beams->shapes->shapes[portal >> 1].centre;
+    const waiting new = {enf_shape_height(beams->shapes, source, centre), portal};
     int32_t at = beams->heap_count++;
-    for (; at > 0 && is_nearer(beams, portal, beams->heap[(at - 1) / 2]); at = (at - 1) / 2)
+    for (; at > 0 && is_nearer(beams, &new, &beams->heap[(at - 1) / 2]); at = (at - 1) / 2)
         beams->heap[at] = beams->heap[(at - 1) / 2];
-    beams->heap[at] = portal;
+    beams->heap[at] = new;
     beams->beams[portal].state = BEAM_WAITING;
 }
 
 static int32_t pop(enf_beams *beams) {
-    int32_t *heap = beams->heap, top = heap[0], last = heap[--beams->heap_count], at = 0;
+    waiting *heap = beams->heap;
+    const waiting last = heap[--beams->heap_count];
+    const int32_t top = heap[0].portal;
+    int32_t at = 0;
     for (int32_t child; (child = 2 * at + 1) < beams->heap_count; at = child) {
-        if (child + 1 < beams->heap_count && is_nearer(beams, heap[child + 1], heap[child])) child++;
-        if (!is_nearer(beams, heap[child], last)) break;
+        if (child + 1 < beams->heap_count && is_nearer(beams, &heap[child + 1], &heap[child])) child++;
+        if (!is_nearer(beams, &heap[child], &last)) break;
         heap[at] = heap[child];
     }
     heap[at] = last;
@@ -100,101 +129,87 @@ static int32_t pop(enf_beams *beams) {
 
 // ---------------------------------------------------------------------------------------------- windows
 
-void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window) {
+static enf_outline outline_of(const enf_beams *beams, int32_t portal) {
     const beam *beam = &beams->beams[portal];
-    if (beam->is_whole)
-        enf_shape_window(beams->shapes, portal, window);
-    else
-        enf_window_copy(window, (const double(*)[3])beam->corners, beam->count);
+    if (beam->is_whole) return enf_shape_outline(beams->shapes, portal >> 1);
+    const kept_window *kept = &beams->kept[beam->kept];
+    return (enf_outline){beam->count, {kept->at[0], kept->at[1], kept->at[2]}};
 }
 
-static void keep(beam *beam, const enf_window *window, enf_remains remains) {
+void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window) {
+    const enf_outline outline = outline_of(beams, portal);
+    enf_window_take(window, &outline);
+}
+
+static void keep(enf_beams *beams, int32_t portal, const enf_window *window, enf_remains remains) {
+    beam *beam = &beams->beams[portal];
     beam->is_whole =
         remains == ENF_REMAINS_WHOLE || window->count > KEPT_MOST || beam->growths >= GROWTHS_MOST;
-    if (beam->is_whole) return;
-    beam->count = window->count;
-    memcpy(beam->corners, window->corners, (size_t)window->count * sizeof *window->corners);
+    if (beam->is_whole) {
+        enf_bit_clear(beams->open, portal);
+        return;
+    }
+    if (beam->kept < 0) beam->kept = beams->kept_count++;
+    beam->count = (int16_t)window->count;
+    for (int axis = 0; axis < 3; axis++)
+        enf_outline_copy(beams->kept[beam->kept].at[axis], window->at[axis], window->count);
 }
 
 /// A portal is reached for the first time.
 static void reach(enf_beams *beams, int32_t source, int32_t portal, enf_remains remains) {
     beam *beam = &beams->beams[portal];
-    beam->depth = enf_shape_height(beams->shapes, source, beams->shapes->shapes[portal >> 1].centre);
+    beam->kept = -1;
     beam->growths = 0;
-    keep(beam, &beams->window, remains);
+    keep(beams, portal, &beams->window, remains);
+    beam->state = BEAM_REACHED;
     beams->reached[beams->reached_count++] = portal;
-    push(beams, portal);
+    push(beams, source, portal);
 }
 
 /// Merges the window into what was reached before.
-static void merge(enf_beams *beams, int32_t portal, enf_remains remains) {
+static void merge(enf_beams *beams, int32_t source, int32_t portal, enf_remains remains) {
     beam *beam = &beams->beams[portal];
     const enf_shape *shape = &beams->shapes->shapes[portal >> 1];
     enf_window *merged = &beams->merged;
-    enf_beams_window(beams, portal, merged);
-    if (merged->count + beams->window.count > ENF_WINDOW_MOST) remains = ENF_REMAINS_WHOLE;
+    if (beam->count + beams->window.count > ENF_WINDOW_MOST) remains = ENF_REMAINS_WHOLE;
     if (remains != ENF_REMAINS_WHOLE) {
+        enf_beams_window(beams, portal, merged);
         if (!enf_hull_extend(merged, &beams->window, shape->axes, beams->shapes->tolerance)) return;
         beam->growths++;
     }
-    keep(beam, merged, remains);
-    if (beam->state == BEAM_REACHED) push(beams, portal);
+    keep(beams, portal, merged, remains);
+    if (beam->state == BEAM_REACHED) push(beams, source, portal);
 }
 
 // ---------------------------------------------------------------------------------------------- casting
 
-/// The separators from the source to what its beams leave of `via`.
-static void find_separators(enf_beams *beams, int32_t source, int32_t via) {
-    if (via == source) {
-        enf_separators_begin(&beams->separators, beams->shapes, source);
-        return;
-    }
-    enf_beams_window(beams, via, &beams->via);
-    enf_separators_find(&beams->separators, beams->shapes, &beams->from, source, &beams->via, via);
-}
-
-/// Notes the parts in a cell that the separators leave something of.
-static void meet_bodies(enf_beams *beams, int32_t source, int32_t via, int32_t cell, bool *ready) {
-    const enf_bodies *parts = beams->bodies;
-    for (int32_t part = parts->cell_first[cell]; part < parts->cell_first[cell + 1]; part++) {
-        if (enf_bit_get(beams->met, part)) continue;
-        if (!*ready) find_separators(beams, source, via);
-        *ready = true;
-        int32_t first = parts->corner_first[part];
-        if (enf_separators_meet(&beams->separators, (const double(*)[3])(parts->corners + first),
-                                parts->corner_first[part + 1] - first))
-            enf_bit_set(beams->met, part);
-    }
-}
-
 /// From one portal into its cell and out of the others.
 static void spread(enf_beams *beams, int32_t source, int32_t via) {
-    const enf_portal_graph *graph = beams->shapes->graph;
-    const uint64_t *row = enf_bits_row(beams->facing, source), *via_row = enf_bits_row(beams->facing, via);
-    int32_t cell = enf_portal_to(graph, via);
-    bool ready = false;
-    if (beams->met) meet_bodies(beams, source, via, cell, &ready);
-    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
-        int32_t next = graph->cell_portals[k];
-        if (!enf_bit_get(row, next) || !enf_bit_get(via_row, next)) continue;
-        bool is_new = beams->beams[next].state == BEAM_NONE;
-        if (!is_new && beams->beams[next].is_whole) continue; // nothing to add
-        if (!ready) find_separators(beams, source, via);
-        ready = true;
-        enf_remains remains = enf_separators_pass(&beams->separators, beams->shapes, next, &beams->window);
+    const enf_follows *follows = beams->follows;
+    bool ready = via == source;
+    if (ready) enf_separators_begin(&beams->separators, beams->shapes, source);
+    for (int32_t k = follows->first[via]; k < follows->first[via + 1]; k++) {
+        int32_t next = follows->portals[k];
+        if (!enf_bit_get(beams->open, next)) continue;
+        if (!ready) {
+            const enf_outline from = enf_shape_outline(beams->shapes, source >> 1),
+                              to = outline_of(beams, via);
+            enf_separators_between(&beams->separators, beams->shapes, &from, source, &to, via);
+            ready = true;
+        }
+        enf_remains remains = enf_separators_cut(&beams->separators, beams->shapes, next, &beams->window);
         if (remains == ENF_REMAINS_NOTHING) continue;
-        if (is_new)
+        if (beams->beams[next].state == BEAM_NONE)
             reach(beams, source, next, remains);
         else
-            merge(beams, next, remains);
+            merge(beams, source, next, remains);
     }
 }
 
-int32_t enf_beams_cast(enf_beams *beams, int32_t source, uint64_t *met, const int32_t **portals) {
-    beams->met = beams->bodies ? met : NULL;
+int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals) {
     for (int32_t i = 0; i < beams->reached_count; i++) beams->beams[beams->reached[i]].state = BEAM_NONE;
-    beams->reached_count = beams->heap_count = 0;
-    enf_shape_window(beams->shapes, source, &beams->from);
+    beams->reached_count = beams->heap_count = beams->kept_count = 0;
+    memcpy(beams->open, enf_bits_row(beams->facing, source), beams->facing->row_words * sizeof(uint64_t));
     spread(beams, source, source);
     while (beams->heap_count > 0) {
         beams->visits++;

@@ -11,21 +11,20 @@
 #define ENF_VISIBILITY_BEAMS_H
 
 #include "visibility/bits.h"
-#include "visibility/bodies.h"
+#include "visibility/follows.h"
 #include "visibility/shapes.h"
 
 /// Scratch memory of one thread.
 typedef struct enf_beams enf_beams;
 
 /// Null without memory. What they are made from is shared and must stay. Of the pairs of portals in `facing`
-/// no others are tried. `parts` may be null.
-enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const enf_bodies *bodies);
+/// no others are tried; `follows` are those of them that can come right after each other.
+enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const enf_follows *follows);
 void enf_beams_free(enf_beams *beams);
 
 /// Casts the beams of a directed portal. *portals receives the portals that they reach, in the order in which
-/// they were reached first; returns how many. Valid until the next call. In *met, a row of bits (null: nobody
-/// asks), those of the parts are set that the beams meet.
-int32_t enf_beams_cast(enf_beams *beams, int32_t source, uint64_t *met, const int32_t **portals);
+/// they were reached first; returns how many. Valid until the next call.
+int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals);
 
 /// What they reach of one of these portals.
 void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window);

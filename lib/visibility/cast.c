@@ -32,13 +32,13 @@ typedef struct casting {
     cast_result *results; ///< per cell
     int64_t *cost;        ///< per cell: portals that face its own
     bool *begun;          ///< per cell
+    enf_follows follows;
 } casting;
 
 static const enf_portal_graph *graph_of(const casting *casting) {
     return casting->cast->sight->shapes->graph;
 }
 
-/// Sends a line through the middle of the portal and of what its beams reach of another; notes which cells it
 /// Sends a line through the source, and notes which cells it comes through after it.
 static bool send_line(const casting *casting, caster *caster, int32_t source, const enf_line *line) {
     const enf_portal_graph *graph = graph_of(casting);
@@ -67,13 +67,14 @@ static void lean(const double middle[3], const double corner[3], double point[3]
 static bool send_lines(const casting *casting, caster *caster, int32_t source, int32_t target) {
     const enf_shapes *shapes = casting->cast->sight->shapes;
     const uint64_t *seen = enf_bits_row(&casting->sightings->seen, enf_portal_from(shapes->graph, source));
-    const double(*corners)[3] = enf_shape_outline(shapes, source >> 1),
+    const double(*corners)[3] = enf_shape_corners(shapes, source >> 1),
           *middle = shapes->shapes[source >> 1].centre;
     int32_t count = shapes->shapes[source >> 1].count, cell = enf_portal_to(shapes->graph, target);
     enf_window window;
     enf_line line;
-    double goal[3];
+    double goal[3], corner[3];
     enf_beams_window(caster->beams, target, &window);
+    const enf_outline outline = enf_window_outline(&window);
     enf_window_middle(&window, goal);
     memcpy(line.from, middle, sizeof line.from);
     memcpy(line.to, goal, sizeof line.to);
@@ -81,7 +82,8 @@ static bool send_lines(const casting *casting, caster *caster, int32_t source, i
         if (!send_line(casting, caster, source, &line)) return false;
         if (enf_bit_get(seen, cell)) break;
         lean(middle, corners[i % count], line.from);
-        lean(goal, window.corners[(i + i / count) % window.count], line.to);
+        enf_outline_corner(&outline, (i + i / count) % window.count, corner);
+        lean(goal, corner, line.to);
     }
     return true;
 }
@@ -90,9 +92,7 @@ static bool cast_portal(const casting *casting, caster *caster, int32_t source) 
     enf_cast *cast = casting->cast;
     const enf_portal_graph *graph = cast->sight->shapes->graph;
     const int32_t *reached;
-    int32_t cell = enf_portal_from(graph, source);
-    uint64_t *met = cast->bodies ? enf_bits_row(&cast->met, cell) : NULL;
-    int32_t count = enf_beams_cast(caster->beams, source, met, &reached);
+    int32_t count = enf_beams_cast(caster->beams, source, &reached), cell = enf_portal_from(graph, source);
     uint64_t *row = enf_bits_row(&cast->beams, source);
     for (int32_t i = 0; i < count; i++) {
         int32_t to = enf_portal_to(graph, reached[i]);
@@ -107,20 +107,9 @@ static bool cast_portal(const casting *casting, caster *caster, int32_t source) 
 
 // ---------------------------------------------------------------------------------------------- jobs
 
-static void meet_bodies_of(const enf_cast *cast, int32_t cell, int32_t other) {
-    for (int32_t k = cast->bodies->cell_first[other]; k < cast->bodies->cell_first[other + 1]; k++)
-        enf_bit_set(enf_bits_row(&cast->met, cell), k);
-}
-
 /// For portals that had no turn.
 static void keep_facing(const casting *casting, int32_t portal) {
     enf_cast *cast = casting->cast;
-    const enf_portal_graph *graph = graph_of(casting);
-    const uint64_t *row = enf_bits_row(cast->facing, portal);
-    int32_t cell = enf_portal_from(graph, portal);
-    if (cast->bodies) meet_bodies_of(cast, cell, enf_portal_to(graph, portal));
-    for (int32_t q = -1; cast->bodies && (q = enf_bit_next(row, cast->facing->row_words, q + 1)) >= 0;)
-        meet_bodies_of(cast, cell, enf_portal_to(graph, q));
     memcpy(enf_bits_row(&cast->beams, portal), enf_bits_row(cast->facing, portal),
            cast->beams.row_words * sizeof(uint64_t));
 }
@@ -153,8 +142,6 @@ static void encode_cell(void *user, int32_t cell, enf_bytes *bytes) {
     enf_put_number(bytes, (uint64_t)result->lines);
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
         enf_put_row(bytes, enf_bits_row(beams, graph->cell_portals[k]), beams->row_words);
-    if (casting->cast->bodies)
-        enf_put_row(bytes, enf_bits_row(&casting->cast->met, cell), casting->cast->met.row_words);
     if (casting->sightings) enf_put_sightings(bytes, casting->sightings, cell, 0);
 }
 
@@ -168,12 +155,15 @@ static bool decode_cell(void *user, int32_t cell, enf_reader *reader) {
     result->lines = (int64_t)enf_take_number(reader, ENF_COUNT_MOST);
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
         enf_take_row(reader, enf_bits_row(beams, graph->cell_portals[k]), beams->row_count);
-    if (casting->cast->bodies)
-        enf_take_row(reader, enf_bits_row(&casting->cast->met, cell), casting->cast->bodies->count);
     return !casting->sightings || enf_take_sightings(reader, casting->sightings, cell);
 }
 
 // ---------------------------------------------------------------------------------------------- all
+
+static bool faces(const void *user, int32_t portal, int32_t next) {
+    const enf_bits *facing = user;
+    return enf_bit_get(enf_bits_row(facing, portal), next);
+}
 
 static bool make_casting(casting *casting, int threads) {
     const enf_portal_graph *graph = graph_of(casting);
@@ -182,15 +172,13 @@ static bool make_casting(casting *casting, int threads) {
     casting->cost = enf_array_zeroed(cells, sizeof *casting->cost);
     casting->begun = enf_array_zeroed(cells, sizeof *casting->begun);
     casting->casters = enf_array_zeroed((size_t)threads, sizeof *casting->casters);
-    if (casting->cast->bodies &&
-        !enf_bits_new(&casting->cast->met, graph->cell_count, casting->cast->bodies->count))
-        return false;
     if (!enf_bits_new(&casting->cast->beams, 2 * graph->opening_count, 2 * graph->opening_count) ||
-        !casting->results || !casting->cost || !casting->begun || !casting->casters)
+        !enf_follows_make(&casting->follows, graph, faces, casting->cast->facing) || !casting->results ||
+        !casting->cost || !casting->begun || !casting->casters)
         return false;
     for (int i = 0; i < threads; i++) {
         casting->casters[i].beams =
-            enf_beams_new(casting->cast->sight->shapes, casting->cast->facing, casting->cast->bodies);
+            enf_beams_new(casting->cast->sight->shapes, casting->cast->facing, &casting->follows);
         if (!casting->casters[i].beams) return false;
     }
     return true;
@@ -202,6 +190,7 @@ static void free_casting(casting *casting, int threads) {
     free(casting->results);
     free(casting->cost);
     free(casting->begun);
+    enf_follows_free(&casting->follows);
 }
 
 static void find_cost(casting *casting) {
@@ -233,7 +222,6 @@ enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, enf_workplace 
     if (!status) {
         find_cost(&casting);
         const enf_work work = {.stage = ENF_STAGE_CAST,
-                               .key = cast->bodies ? (uint64_t)cast->bodies->count : 0,
                                .cell_count = graph_of(&casting)->cell_count,
                                .cost = casting.cost,
                                .user = &casting,
@@ -243,8 +231,6 @@ enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, enf_workplace 
         status = enf_work_run(&work, place, casting.begun, error);
     }
     if (!status) sum_up(&casting);
-    for (int32_t c = 0; !status && cast->bodies && c < graph_of(&casting)->cell_count; c++)
-        meet_bodies_of(cast, c, c);
     free_casting(&casting, threads);
     if (!status) enf_facing_symmetrise(&cast->beams);
     return status;

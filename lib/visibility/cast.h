@@ -4,7 +4,6 @@
 #define ENF_VISIBILITY_CAST_H
 
 #include "visibility/bits.h"
-#include "visibility/bodies.h"
 #include "visibility/sight.h"
 #include "visibility/sightings.h"
 #include "visibility/work.h"
@@ -12,11 +11,9 @@
 typedef struct enf_cast {
     const enf_sight *sight;
     const enf_bits *facing;
-    const enf_bodies *bodies; ///< or null: nobody asks for parts
 
     // Made; free them in any case.
     enf_bits beams; ///< bit q of row p: portal p may see portal q; symmetric as enf_facing_find's
-    enf_bits met; ///< of parts only: bit k of row c: the beams of cell c meet part k, or it is the cell's own
     int64_t visits, lines;
     int32_t cells_budgeted; ///< cells with portals whose turn came too late: those keep what faces them
 } enf_cast;

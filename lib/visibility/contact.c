@@ -2,28 +2,30 @@
 #include "visibility/contact.h"
 
 #include <math.h>
+#include <string.h>
 
-/// Corners of one window; an edge, if there are two.
+/// Corners of one outline; an edge, if there are two.
 typedef struct contact {
     int count;
-    const double *ends[2];
+    double ends[2][3];
 } contact;
 
 /// The corners whose height is within the band of the highest (side 1) or the lowest (side -1); more than two
 /// are counted only.
-static contact find_contact(const enf_window *window, const double normal[3], double side, double band) {
-    double highest = -INFINITY;
-    for (int32_t i = 0; i < window->count; i++) {
-        double height = side * enf_dot(normal, window->corners[i]);
-        if (height > highest) highest = height;
+static contact find_contact(const enf_outline *outline, const double normal[3], double side, double band) {
+    double heights[ENF_WINDOW_MOST], highest = -INFINITY;
+    for (int32_t i = 0; i < outline->count; i++) {
+        heights[i] = side * (normal[0] * outline->at[0][i] + normal[1] * outline->at[1][i] +
+                             normal[2] * outline->at[2][i]);
+        if (heights[i] > highest) highest = heights[i];
     }
     contact contact = {0};
-    for (int32_t i = 0; i < window->count; i++) {
-        if (side * enf_dot(normal, window->corners[i]) < highest - band) continue;
-        if (contact.count < 2) contact.ends[contact.count] = window->corners[i];
+    for (int32_t i = 0; i < outline->count; i++) {
+        if (heights[i] < highest - band) continue;
+        if (contact.count < 2) enf_outline_corner(outline, i, contact.ends[contact.count]);
         contact.count++;
     }
-    if (contact.count == 1) contact.ends[1] = contact.ends[0];
+    if (contact.count == 1) memcpy(contact.ends[1], contact.ends[0], sizeof contact.ends[0]);
     return contact;
 }
 
@@ -63,7 +65,7 @@ static double crossing_distance(const contact *one, const contact *two) {
     return sqrt(enf_dot(w, w));
 }
 
-double enf_contact_distance(const enf_window *below, const enf_window *above, const double normal[3],
+double enf_contact_distance(const enf_outline *below, const enf_outline *above, const double normal[3],
                             double band) {
     contact one = find_contact(below, normal, 1, band), two = find_contact(above, normal, -1, band);
     if (one.count > 2 || two.count > 2) return 0;

@@ -5,10 +5,10 @@
 
 #include "visibility/window.h"
 
-/// How near one window's highest corners above a plane through the origin are to the other's lowest: the
+/// How near one outline's highest corners above a plane through the origin are to the other's lowest: the
 /// distance of the edges, or single corners, that lie within `band` of the highest height, and the lowest. 0
 /// if more than an edge does.
-double enf_contact_distance(const enf_window *below, const enf_window *above, const double normal[3],
+double enf_contact_distance(const enf_outline *below, const enf_outline *above, const double normal[3],
                             double band);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "visibility/beyond.h"
+#include "visibility/follows.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,33 +13,35 @@
 /// What one thread has.
 typedef struct flooder {
     int32_t *queue;
-    uint64_t *failed; ///< a row of portals: looked at, and not facing
+    uint64_t *done; ///< a row of portals: looked at
 } flooder;
+
+/// What is looked at first, side by side: a line of the cache.
+typedef struct face {
+    double low[3], high[3]; ///< the box
+    double plane;           ///< where it is along the axis that it is flat along
+    int32_t axis;           ///< that; -1: not flat along any
+    bool up;                ///< the normal of portal 2k points up that axis
+} face;
 
 typedef struct search {
     const enf_shapes *shapes;
     enf_whole_corners whole;
     enf_bits *found;
-    int32_t *follow; ///< per portal, an offset into follows
-    bool *follows;   ///< whether each portal of the cell behind it faces it, in the order of cell_portals
+    face *faces; ///< per opening
+    enf_follows follows;
     flooder *flooders;
 } search;
 
 typedef enum answer { NO, UNSURE, YES } answer;
 
-/// Is some of the opening higher than the portal's plane (side 1), or lower (side -1)? For a plane along the
-/// axes, which most are in buildings, this is sure.
+/// Is some of the opening higher than the portal's plane (side 1), or lower (side -1)?
 static answer has_corner(const enf_shapes *shapes, int32_t portal, int32_t opening, double side) {
-    const enf_shape *shape = &shapes->shapes[opening], *plane = &shapes->shapes[portal >> 1];
-    int axis = plane->flat_axis;
-    if (axis >= 0) {
-        bool up = ((portal & 1) != 0) == (plane->normal[axis] * side < 0);
-        return (up ? shape->high[axis] > plane->low[axis] : shape->low[axis] < plane->low[axis]) ? YES : NO;
-    }
+    const enf_shape *shape = &shapes->shapes[opening];
     double middle = side * enf_shape_height(shapes, portal, shape->centre), highest = middle;
     if (middle > shapes->tolerance) return YES;
     if (middle + shape->radius < -shapes->tolerance) return NO;
-    const double(*corners)[3] = enf_shape_outline(shapes, opening);
+    const double(*corners)[3] = enf_shape_corners(shapes, opening);
     for (int32_t i = 0; i < shape->count; i++) {
         double height = side * enf_shape_height(shapes, portal, corners[i]);
         if (height > highest) highest = height;
@@ -46,39 +49,38 @@ static answer has_corner(const enf_shapes *shapes, int32_t portal, int32_t openi
     return highest > shapes->tolerance ? YES : highest < -shapes->tolerance ? NO : UNSURE;
 }
 
-/// The same, sure.
-static bool reaches(const search *search, int32_t portal, int32_t opening, int side) {
-    answer quick = has_corner(search->shapes, portal, opening, side);
+/// The same, sure. For a plane along the axes, which most are in buildings, that is quick.
+static bool reaches(const search *search, int32_t portal, int32_t opening, bool above) {
+    const face *plane = &search->faces[portal >> 1], *face = &search->faces[opening];
+    const bool forward = above == !(portal & 1);
+    if (plane->axis >= 0)
+        return plane->up == forward ? face->high[plane->axis] > plane->plane
+                                    : face->low[plane->axis] < plane->plane;
+    const answer quick = has_corner(search->shapes, portal, opening, above ? 1 : -1);
     if (quick != UNSURE) return quick == YES;
-    return enf_opening_is_beyond(&search->whole, portal >> 1, opening, portal & 1 ? -side : side);
+    return enf_opening_is_beyond(&search->whole, portal >> 1, opening, forward ? 1 : -1);
 }
 
 /// Could a line pass the one portal and then the other?
 static bool is_facing(const search *search, int32_t portal, int32_t other) {
-    return portal >> 1 != other >> 1 && reaches(search, portal, other >> 1, 1) &&
-           reaches(search, other, portal >> 1, -1);
+    return portal >> 1 != other >> 1 && reaches(search, portal, other >> 1, true) &&
+           reaches(search, other, portal >> 1, false);
 }
 
-/// Could a line through the source pass this portal? Each is looked at once: what fails is remembered, too.
-static bool can_pass(const search *search, const flooder *flooder, int32_t source, int32_t portal) {
-    if (enf_bit_get(flooder->failed, portal)) return false;
-    if (is_facing(search, source, portal)) return true;
-    enf_bit_set(flooder->failed, portal);
-    return false;
-}
-
+/// Each portal is looked at once.
 static void flood(const search *search, int32_t source, const flooder *flooder) {
-    const enf_portal_graph *graph = search->shapes->graph;
+    const enf_follows *follows = &search->follows;
     uint64_t *row = enf_bits_row(search->found, source);
     int32_t count = 0;
-    memset(flooder->failed, 0, search->found->row_words * sizeof *row);
+    memset(flooder->done, 0, search->found->row_words * sizeof *row);
     flooder->queue[count++] = source;
     for (int32_t at = 0; at < count; at++) {
-        int32_t via = flooder->queue[at], cell = enf_portal_to(graph, via);
-        const bool *follows = search->follows + search->follow[via];
-        for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++, follows++) {
-            int32_t next = graph->cell_portals[k];
-            if (!*follows || enf_bit_get(row, next) || !can_pass(search, flooder, source, next)) continue;
+        const int32_t via = flooder->queue[at];
+        for (int32_t k = follows->first[via]; k < follows->first[via + 1]; k++) {
+            const int32_t next = follows->portals[k];
+            if (enf_bit_get(flooder->done, next)) continue;
+            enf_bit_set(flooder->done, next);
+            if (!is_facing(search, source, next)) continue;
             enf_bit_set(row, next);
             flooder->queue[count++] = next;
         }
@@ -90,25 +92,23 @@ static void flood_job(void *user, int32_t index, int thread) {
     flood(search, index, &search->flooders[thread]);
 }
 
-static bool make_follows(search *search) {
-    const enf_portal_graph *graph = search->shapes->graph;
-    int32_t portals = 2 * graph->opening_count;
-    search->follow = enf_array_new((size_t)portals, sizeof *search->follow);
-    size_t count = 0;
-    for (int32_t p = 0; p < portals; p++) {
-        const int32_t *of = &graph->cell_portal[enf_portal_to(graph, p)];
-        if (search->follow) search->follow[p] = (int32_t)count;
-        count += (size_t)(of[1] - of[0]);
-        if (count > INT32_MAX) return false;
+static bool follows(const void *user, int32_t portal, int32_t next) {
+    return is_facing(user, portal, next);
+}
+
+static bool make_faces(search *search) {
+    const enf_shapes *shapes = search->shapes;
+    search->faces = enf_array_new((size_t)shapes->graph->opening_count, sizeof *search->faces);
+    for (int32_t k = 0; search->faces && k < shapes->graph->opening_count; k++) {
+        const enf_shape *shape = &shapes->shapes[k];
+        face *face = &search->faces[k];
+        memcpy(face->low, shape->low, sizeof face->low);
+        memcpy(face->high, shape->high, sizeof face->high);
+        face->axis = shape->flat_axis;
+        face->plane = face->axis >= 0 ? face->low[face->axis] : 0;
+        face->up = face->axis >= 0 && shape->normal[face->axis] > 0;
     }
-    search->follows = enf_array_new(count, sizeof *search->follows);
-    if (!search->follow || !search->follows) return false;
-    for (int32_t p = 0; p < portals; p++) {
-        const int32_t *of = &graph->cell_portal[enf_portal_to(graph, p)];
-        for (int32_t k = of[0]; k < of[1]; k++)
-            search->follows[search->follow[p] + k - of[0]] = is_facing(search, p, graph->cell_portals[k]);
-    }
-    return true;
+    return search->faces != NULL;
 }
 
 void enf_facing_symmetrise(enf_bits *bits) {
@@ -125,21 +125,21 @@ static bool make_search(search *search, int threads) {
     for (int i = 0; search->flooders && i < threads; i++) {
         flooder *flooder = &search->flooders[i];
         flooder->queue = enf_array_new(portals + 1, sizeof *flooder->queue);
-        flooder->failed = enf_array_new(search->found->row_words, sizeof *flooder->failed);
-        if (!flooder->queue || !flooder->failed) return false;
+        flooder->done = enf_array_new(search->found->row_words, sizeof *flooder->done);
+        if (!flooder->queue || !flooder->done) return false;
     }
     return search->flooders && enf_whole_corners_make(&search->whole, search->shapes->graph) &&
-           make_follows(search);
+           make_faces(search) && enf_follows_make(&search->follows, search->shapes->graph, follows, search);
 }
 
 static void free_search(search *search, int threads) {
     for (int i = 0; search->flooders && i < threads; i++) {
         free(search->flooders[i].queue);
-        free(search->flooders[i].failed);
+        free(search->flooders[i].done);
     }
     free(search->flooders);
-    free(search->follow);
-    free(search->follows);
+    free(search->faces);
+    enf_follows_free(&search->follows);
     enf_whole_corners_free(&search->whole);
 }
 

@@ -1,168 +1,249 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Planes are found for four edges at a time.
 #include "visibility/separator.h"
 
+#include "base/four.h"
 #include "visibility/contact.h"
 
 #include <math.h>
-
-typedef struct tangent {
-    double normal[3]; ///< length 1
-    double tilt;      ///< how far the plane may move, anywhere in the world, if its corners move by 1
-} tangent;
-
-/// The plane through the edge from a to b that touches the window, which is on its front side: of the planes
-/// through the edge and a corner, the one that has no other corner behind it.
-static bool find_tangent(const double a[3], const double b[3], const enf_window *window, double extent,
-                         tangent *tangent) {
-    double edge[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, normal[3] = {0}, arm = 0;
-    for (int32_t i = 0; i < window->count; i++) {
-        const double *corner = window->corners[i];
-        double way[3] = {corner[0] - a[0], corner[1] - a[1], corner[2] - a[2]};
-        if (i > 0 && enf_dot(normal, way) >= 0) continue;
-        normal[0] = edge[1] * way[2] - edge[2] * way[1];
-        normal[1] = edge[2] * way[0] - edge[0] * way[2];
-        normal[2] = edge[0] * way[1] - edge[1] * way[0];
-        arm = fabs(way[0]) + fabs(way[1]) + fabs(way[2]);
-    }
-    arm += fabs(edge[0]) + fabs(edge[1]) + fabs(edge[2]);
-    double square = enf_dot(normal, normal), inverse = 1 / sqrt(square);
-    if (!(square > 0) || !(inverse < HUGE_VAL)) return false;
-    for (int axis = 0; axis < 3; axis++) tangent->normal[axis] = normal[axis] * inverse;
-    tangent->tilt = 2 + 2 * arm * extent * inverse;
-    return true;
-}
-
-/// (fmax would be a call here, for the sake of NaN.)
-static double highest(const enf_window *window, const double normal[3]) {
-    double highest = enf_dot(normal, window->corners[0]);
-    for (int32_t i = 1; i < window->count; i++) {
-        double height = enf_dot(normal, window->corners[i]);
-        if (height > highest) highest = height;
-    }
-    return highest;
-}
-
-static double lowest(const enf_window *window, const double normal[3]) {
-    double lowest = enf_dot(normal, window->corners[0]);
-    for (int32_t i = 1; i < window->count; i++) {
-        double height = enf_dot(normal, window->corners[i]);
-        if (height < lowest) lowest = height;
-    }
-    return lowest;
-}
 
 /// Corners this near to a plane may touch it. Points of a window next to the plane, but for its tolerance,
 /// are not further from those corners than 2^-14 of the window's size, or so.
 static const double band_tolerances = 0x1p14;
 
-/// Of the size of the world: spheres nearer to each other than `near` are looked at closely; contacts may be
+/// Of the size of the world: what is nearer to each other than `near` are looked at closely; contacts may be
 /// nearer than they look by `contact_error`, as corners within the band count for all that is near them.
 static const double near = 0x1p-12, contact_error = 0x1p-30;
 
 /// Two windows and the way between them.
 typedef struct passage {
     const enf_shapes *shapes;
-    const enf_window *one, *other; ///< planes go through the edges of one
-    bool turns;                    ///< one turns counter-clockwise against the sight
-    bool forward;                  ///< sight goes from one to other
-    double gap;                    ///< the windows are at least this far apart; negative: no telling
+    const enf_outline *one, *other; ///< planes go through the edges of one
+    bool turns;                     ///< one turns counter-clockwise against the sight
+    bool forward;                   ///< sight goes from one to other
+    double gap;                     ///< the windows are at least this far apart; negative: no telling
+    double span;                    ///< no way from corner to corner is longer, all axes summed up
 } passage;
 
-/// What a plane must leave over. A point of a window may be off by the tolerance, so a line may come through
-/// the plane the wrong way, by that much on the way between the windows where both touch the plane, and go on
-/// so to the end of the world: where windows touch each other at the plane, the plane says nothing.
-static double find_slack(const passage *passage, const tangent *tangent) {
+/// The planes through four edges that touch the other window, which is on their front side.
+typedef struct tangents {
+    enf_four normal[3];     ///< length 1
+    enf_four tilt;          ///< how far the plane may move, anywhere in the world, if its corners move by 1
+    enf_four behind, front; ///< the highest corner of one, the lowest of the other
+    enf_four_mask good;     ///< there is such a plane, and it has one behind it
+} tangents;
+
+ENF_PART_OF_WIDE enf_four dot_four(const enf_four a[3], const enf_four b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+ENF_PART_OF_WIDE void cross_four(const enf_four a[3], const enf_four b[3], enf_four cross[3]) {
+    cross[0] = a[1] * b[2] - a[2] * b[1];
+    cross[1] = a[2] * b[0] - a[0] * b[2];
+    cross[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/// Of the planes through an edge and a corner, the one that has no other corner behind it: from each corner
+/// that is, the plane turns on to it.
+ENF_PART_OF_WIDE void turn_to(const enf_outline *other, const enf_four from[3], const enf_four edge[3],
+                              enf_four normal[3]) {
+    enf_four way[3], next[3];
+    for (int axis = 0; axis < 3; axis++) way[axis] = other->at[axis][0] - from[axis];
+    cross_four(edge, way, normal);
+    for (int32_t i = 1; i < other->count; i++) {
+        for (int axis = 0; axis < 3; axis++) way[axis] = other->at[axis][i] - from[axis];
+        cross_four(edge, way, next);
+        const enf_four_mask behind = dot_four(normal, way) < 0;
+        for (int axis = 0; axis < 3; axis++) normal[axis] = enf_four_choose(behind, next[axis], normal[axis]);
+    }
+}
+
+ENF_PART_OF_WIDE enf_four inverse_root(enf_four square) {
+    const enf_four roots = {sqrt(square[0]), sqrt(square[1]), sqrt(square[2]), sqrt(square[3])};
+    return 1 / roots;
+}
+
+/// The highest corner above planes through the origin.
+ENF_PART_OF_WIDE enf_four highest(const enf_outline *outline, const enf_four normal[3]) {
+    enf_four highest = enf_four_all(-HUGE_VAL);
+    for (int32_t i = 0; i < outline->count; i++)
+        highest = enf_four_max(highest, outline->at[0][i] * normal[0] + outline->at[1][i] * normal[1] +
+                                            outline->at[2][i] * normal[2]);
+    return highest;
+}
+
+ENF_PART_OF_WIDE enf_four lowest(const enf_outline *outline, const enf_four normal[3]) {
+    enf_four lowest = enf_four_all(HUGE_VAL);
+    for (int32_t i = 0; i < outline->count; i++)
+        lowest = enf_four_min(lowest, outline->at[0][i] * normal[0] + outline->at[1][i] * normal[1] +
+                                          outline->at[2][i] * normal[2]);
+    return lowest;
+}
+
+ENF_PART_OF_WIDE tangents find_tangents(const passage *passage, int32_t first) {
+    const int32_t from = passage->turns ? first : first + 1, to = passage->turns ? first + 1 : first;
+    enf_four a[3], edge[3], normal[3];
+    tangents tangents;
+    for (int axis = 0; axis < 3; axis++) {
+        a[axis] = enf_four_load(passage->one->at[axis] + from);
+        edge[axis] = enf_four_load(passage->one->at[axis] + to) - a[axis];
+    }
+    turn_to(passage->other, a, edge, normal);
+    const enf_four square = dot_four(normal, normal), inverse = inverse_root(square);
+    for (int axis = 0; axis < 3; axis++) tangents.normal[axis] = normal[axis] * inverse;
+    tangents.tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse;
+    tangents.behind = highest(passage->one, tangents.normal);
+    tangents.front = lowest(passage->other, tangents.normal);
+    tangents.good = (square > 0) & (inverse < HUGE_VAL) &
+                    (tangents.behind <= tangents.front + passage->shapes->tolerance);
+    return tangents;
+}
+
+/// Which of four edges from this one on there are.
+ENF_PART_OF_WIDE enf_four_mask are_edges(const enf_outline *outline, int32_t first) {
+    return (enf_four_mask){0, 1, 2, 3} < (int64_t)(outline->count - first);
+}
+
+// What a plane must leave over. A point of a window may be off by the tolerance, so a line may come through
+// the plane the wrong way, by that much on the way between the windows where both touch the plane, and go on
+// so to the end of the world: where windows touch each other at the plane, the plane says nothing.
+
+static double find_swing(const passage *passage, double distance) {
+    return 4 * passage->shapes->extent / distance;
+}
+
+/// For windows that are near each other: how near, where they touch the plane?
+static double find_slack(const passage *passage, const double normal[3], double tilt) {
     const enf_shapes *shapes = passage->shapes;
-    double distance = passage->gap;
-    if (distance < shapes->extent * near) {
-        distance = enf_contact_distance(passage->one, passage->other, tangent->normal,
-                                        band_tolerances * shapes->tolerance);
-        distance -= shapes->extent * contact_error;
-    }
-    if (!(distance > 0)) return HUGE_VAL;
-    return shapes->tolerance * (tangent->tilt + 4 * shapes->extent / distance);
+    const double distance =
+        enf_contact_distance(passage->one, passage->other, normal, band_tolerances * shapes->tolerance) -
+        shapes->extent * contact_error;
+    return distance > 0 ? shapes->tolerance * (tilt + find_swing(passage, distance)) : HUGE_VAL;
 }
 
-static void add_planes(enf_separators *separators, const passage *passage) {
-    const enf_window *one = passage->one;
-    for (int32_t i = 0; i < one->count && separators->count < ENF_SEPARATORS_MOST; i++) {
-        int32_t next = i + 1 < one->count ? i + 1 : 0;
-        const double *a = one->corners[passage->turns ? i : next],
-                     *b = one->corners[passage->turns ? next : i];
-        tangent tangent;
-        if (!find_tangent(a, b, passage->other, passage->shapes->extent, &tangent)) continue;
-        double behind = highest(one, tangent.normal), front = lowest(passage->other, tangent.normal);
-        if (behind > front + passage->shapes->tolerance) continue;
-        double slack = find_slack(passage, &tangent);
-        if (slack > passage->shapes->extent) continue;
-        enf_cut *cut = &separators->cuts[separators->count++];
-        for (int axis = 0; axis < 3; axis++)
-            cut->normal[axis] = passage->forward ? tangent.normal[axis] : -tangent.normal[axis];
-        cut->least = (passage->forward ? front : -behind) - slack;
+static void add_cut(enf_separators *separators, const double normal[3], double least) {
+    const int32_t index = separators->count++;
+    for (int axis = 0; axis < 3; axis++) separators->normal[axis][index] = normal[axis];
+    separators->least[index] = least;
+}
+
+/// For windows that are not far from each other.
+ENF_PART_OF_WIDE void add_near_planes(enf_separators *separators, const passage *passage) {
+    const enf_outline *one = passage->one;
+    for (int32_t first = 0; first < one->count; first += ENF_FOUR) {
+        const tangents tangents = find_tangents(passage, first);
+        unsigned good = enf_four_bits(tangents.good & are_edges(one, first));
+        for (; good && separators->count < ENF_SEPARATORS_MOST; good &= good - 1) {
+            const int lane = __builtin_ctz(good);
+            const double sign = passage->forward ? 1 : -1;
+            double normal[3];
+            for (int axis = 0; axis < 3; axis++) normal[axis] = tangents.normal[axis][lane];
+            const double slack = find_slack(passage, normal, tangents.tilt[lane]);
+            if (slack > passage->shapes->extent) continue;
+            for (int axis = 0; axis < 3; axis++) normal[axis] *= sign;
+            add_cut(separators, normal,
+                    (passage->forward ? tangents.front[lane] : -tangents.behind[lane]) - slack);
+        }
     }
 }
 
+/// Four cuts, of which those that are good are added. (Not to branch here is worth it: there is no telling
+/// which they are.)
+ENF_PART_OF_WIDE void add_good(enf_separators *separators, const enf_four normal[3], enf_four least,
+                               enf_four_mask good) {
+    int32_t index = separators->count;
+    for (int lane = 0; lane < ENF_FOUR; lane++) {
+        for (int axis = 0; axis < 3; axis++) separators->normal[axis][index] = normal[axis][lane];
+        separators->least[index] = least[lane];
+        index -= (int32_t)good[lane];
+    }
+    separators->count = index;
+}
+
+/// For windows that are: their distance is that of their openings.
+ENF_PART_OF_WIDE void add_far_planes(enf_separators *separators, const passage *passage) {
+    const enf_outline *one = passage->one;
+    const double swing = find_swing(passage, passage->gap), tolerance = passage->shapes->tolerance;
+    for (int32_t first = 0; first < one->count; first += ENF_FOUR) {
+        if (separators->count > ENF_SEPARATORS_MOST - ENF_FOUR) return;
+        tangents tangents = find_tangents(passage, first);
+        const enf_four slack = tolerance * (tangents.tilt + swing);
+        const enf_four_mask good = tangents.good & are_edges(one, first) & (slack <= passage->shapes->extent);
+        if (!passage->forward)
+            for (int axis = 0; axis < 3; axis++) tangents.normal[axis] = -tangents.normal[axis];
+        add_good(separators, tangents.normal, (passage->forward ? tangents.front : -tangents.behind) - slack,
+                 good);
+    }
+}
+
+ENF_PART_OF_WIDE void add_planes(enf_separators *separators, const passage *passage) {
+    if (passage->gap < passage->shapes->extent * near)
+        add_near_planes(separators, passage);
+    else
+        add_far_planes(separators, passage);
+}
+
+/// The size of the box around two openings, all axes summed up.
+static double find_span(const enf_shapes *shapes, int32_t portal, int32_t other) {
+    const enf_shape *one = &shapes->shapes[portal >> 1], *two = &shapes->shapes[other >> 1];
+    double span = 0;
+    for (int axis = 0; axis < 3; axis++)
+        span += fabs(one->middle[axis] - two->middle[axis]) + one->half[axis] + two->half[axis];
+    return span;
+}
+
+/// How far apart two openings are at least, going by their spheres and by their boxes.
 static double find_gap(const enf_shapes *shapes, int32_t portal, int32_t other) {
     const enf_shape *one = &shapes->shapes[portal >> 1], *two = &shapes->shapes[other >> 1];
-    double way[3];
-    for (int axis = 0; axis < 3; axis++) way[axis] = one->centre[axis] - two->centre[axis];
-    return sqrt(enf_dot(way, way)) - one->radius - two->radius;
+    double way[3], apart[3];
+    for (int axis = 0; axis < 3; axis++) {
+        way[axis] = one->centre[axis] - two->centre[axis];
+        const double between =
+            fabs(one->middle[axis] - two->middle[axis]) - one->half[axis] - two->half[axis];
+        apart[axis] = between > 0 ? between : 0;
+    }
+    const double spheres = sqrt(enf_dot(way, way)) - one->radius - two->radius,
+                 boxes = sqrt(enf_dot(apart, apart));
+    return spheres > boxes ? spheres : boxes;
+}
+
+/// Fills up the last four.
+static void close_separators(enf_separators *separators) {
+    const double nowhere[3] = {0};
+    const int32_t count = separators->count;
+    while (separators->count % ENF_FOUR) add_cut(separators, nowhere, -HUGE_VAL);
+    separators->count = count;
 }
 
 void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, int32_t from_portal) {
-    separators->count = 1;
-    separators->cuts[0] = enf_shape_cut(shapes, from_portal);
+    const enf_cut cut = enf_shape_cut(shapes, from_portal);
+    separators->count = 0;
+    add_cut(separators, cut.normal, cut.least);
+    close_separators(separators);
 }
 
-void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
-                         int32_t from_portal, const enf_window *to, int32_t to_portal) {
+ENF_WIDE_TOO void enf_separators_between(enf_separators *separators, const enf_shapes *shapes,
+                                         const enf_outline *from, int32_t from_portal, const enf_outline *to,
+                                         int32_t to_portal) {
     enf_separators_begin(separators, shapes, from_portal);
     passage passage = {.shapes = shapes,
                        .one = from,
                        .other = to,
                        .turns = !(from_portal & 1),
                        .forward = true,
-                       .gap = find_gap(shapes, from_portal, to_portal)};
+                       .gap = find_gap(shapes, from_portal, to_portal),
+                       .span = find_span(shapes, from_portal, to_portal)};
     add_planes(separators, &passage);
     passage.one = to;
     passage.other = from;
     passage.turns = to_portal & 1;
     passage.forward = false;
     add_planes(separators, &passage);
+    close_separators(separators);
 }
 
-/// False if some cut leaves nothing of the sphere. *needed receives the cuts that may take something.
-static bool meets_sphere(const enf_separators *separators, const enf_shape *shape, uint64_t *needed) {
-    *needed = 0;
-    for (int32_t i = 0; i < separators->count; i++) {
-        const enf_cut *cut = &separators->cuts[i];
-        double height = enf_dot(cut->normal, shape->centre) - cut->least;
-        if (height < -shape->radius) return false;
-        if (height < shape->radius) *needed |= UINT64_C(1) << i;
-    }
-    return true;
-}
-
-enf_remains enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
-                                enf_window *window) {
-    uint64_t needed;
-    if (!meets_sphere(separators, &shapes->shapes[portal >> 1], &needed)) return ENF_REMAINS_NOTHING;
-    enf_shape_window(shapes, portal, window);
-    enf_remains remains = ENF_REMAINS_WHOLE;
-    for (; needed; needed &= needed - 1) {
-        enf_remains now = enf_window_cut(window, &separators->cuts[__builtin_ctzll(needed)]);
-        if (now == ENF_REMAINS_NOTHING) return now;
-        if (now == ENF_REMAINS_PART) remains = now;
-    }
-    return remains;
-}
-
-bool enf_separators_meet(const enf_separators *separators, const double (*points)[3], int32_t count) {
-    for (int32_t i = 0; i < separators->count; i++) {
-        const enf_cut *cut = &separators->cuts[i];
-        int32_t k = 0;
-        while (k < count && enf_dot(cut->normal, points[k]) < cut->least) k++;
-        if (k == count) return false;
-    }
-    return true;
+void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
+                         int32_t from_portal, const enf_window *to, int32_t to_portal) {
+    const enf_outline one = enf_window_outline(from), two = enf_window_outline(to);
+    enf_separators_between(separators, shapes, &one, from_portal, &two, to_portal);
 }

@@ -9,9 +9,11 @@
 
 enum { ENF_SEPARATORS_MOST = 64 };
 
+/// Cuts. What is above the count, up to the next four, leaves everything over.
 typedef struct enf_separators {
     int32_t count;
-    enf_cut cuts[ENF_SEPARATORS_MOST];
+    double normal[3][ENF_SEPARATORS_MOST],
+        least[ENF_SEPARATORS_MOST]; ///< keep what is in front: normal . x >= least
 } enf_separators;
 
 /// For lines that have passed one directed portal only: they go on beyond its plane.
@@ -21,14 +23,21 @@ void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, 
 /// and `to` in front: lines that pass `from` and then `to` stay in front from there on. `from` is a window of
 /// the directed portal `from_portal`, `to` of `to_portal`. A plane that rounding could tilt too much is left
 /// out, or given the slack it needs.
+void enf_separators_between(enf_separators *separators, const enf_shapes *shapes, const enf_outline *from,
+                            int32_t from_portal, const enf_outline *to, int32_t to_portal);
+
+/// The same, for windows.
 void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
                          int32_t from_portal, const enf_window *to, int32_t to_portal);
 
-/// What they leave of another portal's opening.
+typedef enum enf_remains { ENF_REMAINS_NOTHING, ENF_REMAINS_PART, ENF_REMAINS_WHOLE } enf_remains;
+
+/// What they leave of another portal's opening. The window receives only a part.
+enf_remains enf_separators_cut(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
+                               enf_window *window);
+
+/// The same; the window receives the whole outline, too.
 enf_remains enf_separators_pass(const enf_separators *separators, const enf_shapes *shapes, int32_t portal,
                                 enf_window *window);
-
-/// May they leave something of the hull of these points?
-bool enf_separators_meet(const enf_separators *separators, const double (*points)[3], int32_t count);
 
 #endif

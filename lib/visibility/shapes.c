@@ -41,6 +41,19 @@ static void make_sphere(enf_shape *shape, const double (*corners)[3], int32_t co
     shape->radius = sqrt(square) * (1 + 0x1p-40);
 }
 
+/// The middle of the outline's box, and its size: a hair more than half, as heights of the two are rounded.
+static void make_middle(enf_shape *shape, const double (*corners)[3], int32_t count) {
+    for (int axis = 0; axis < 3; axis++) {
+        double low = corners[0][axis], high = low;
+        for (int32_t i = 1; i < count; i++) {
+            low = fmin(low, corners[i][axis]);
+            high = fmax(high, corners[i][axis]);
+        }
+        shape->middle[axis] = low / 2 + high / 2;
+        shape->half[axis] = (high / 2 - low / 2) * (1 + 0x1p-40) + fabs(shape->middle[axis]) * 0x1p-46;
+    }
+}
+
 static void make_box(enf_shape *shape, const double (*corners)[3], int32_t count) {
     shape->flat_axis = -1;
     for (int axis = 0; axis < 3; axis++) {
@@ -83,6 +96,16 @@ static double measure_bend(const enf_shape *shape, const double (*corners)[3], i
     return bend;
 }
 
+static void make_outline(enf_shapes *shapes, int32_t opening) {
+    const double(*corners)[3] = enf_shape_corners(shapes, opening);
+    const enf_outline outline = enf_shape_outline(shapes, opening);
+    for (int axis = 0; axis < 3; axis++) {
+        double *along = shapes->outlines + (outline.at[axis] - shapes->outlines);
+        for (int32_t i = 0; i < outline.count; i++) along[i] = corners[i][axis];
+        enf_outline_close(along, outline.count);
+    }
+}
+
 static void make_shape(enf_shapes *shapes, int32_t opening, int32_t *first, double *bend) {
     const enf_portal_graph *graph = shapes->graph;
     enf_shape *shape = &shapes->shapes[opening];
@@ -95,13 +118,15 @@ static void make_shape(enf_shapes *shapes, int32_t opening, int32_t *first, doub
     shape->first = *first;
     shape->count = count;
     if (count <= ENF_WINDING_CORNERS_MAX) {
-        memcpy(shapes->outlines + *first, corners, (size_t)count * sizeof *corners);
+        memcpy(shapes->corners + *first, corners, (size_t)count * sizeof *corners);
     } else {
         shape->count = 4;
-        make_rectangle(shape, corners, count, shapes->outlines + *first);
+        make_rectangle(shape, corners, count, shapes->corners + *first);
     }
     *first += shape->count;
-    make_sphere(shape, enf_shape_outline(shapes, opening), shape->count);
+    make_sphere(shape, enf_shape_corners(shapes, opening), shape->count);
+    make_middle(shape, enf_shape_corners(shapes, opening), shape->count);
+    make_outline(shapes, opening);
 }
 
 /// The least power of two that no coordinate exceeds.
@@ -118,9 +143,11 @@ bool enf_shapes_make(enf_shapes *shapes, const enf_portal_graph *graph) {
     size_t corners = (size_t)graph->opening_corner[graph->opening_count];
     *shapes = (enf_shapes){.graph = graph};
     shapes->shapes = enf_array_zeroed((size_t)graph->opening_count, sizeof *shapes->shapes);
-    shapes->outlines = enf_array_new(corners, sizeof *shapes->outlines);
+    shapes->corners = enf_array_new(corners, sizeof *shapes->corners);
+    shapes->outlines = enf_array_zeroed(corners + ENF_OUTLINE_MORE * ((size_t)graph->opening_count + 1),
+                                     3 * sizeof *shapes->outlines);
     shapes->cell_is_convex = enf_array_new((size_t)graph->cell_count, sizeof *shapes->cell_is_convex);
-    if (!shapes->shapes || !shapes->outlines || !shapes->cell_is_convex) return false;
+    if (!shapes->shapes || !shapes->corners || !shapes->outlines || !shapes->cell_is_convex) return false;
     double size = measure_size(graph), bend = 0;
     int32_t first = 0;
     for (int32_t k = 0; k < graph->opening_count; k++) make_shape(shapes, k, &first, &bend);
@@ -133,6 +160,7 @@ bool enf_shapes_make(enf_shapes *shapes, const enf_portal_graph *graph) {
 
 void enf_shapes_free(enf_shapes *shapes) {
     free(shapes->shapes);
+    free(shapes->corners);
     free(shapes->outlines);
     free(shapes->cell_is_convex);
     memset(shapes, 0, sizeof *shapes);

@@ -7,18 +7,20 @@
 #include "visibility/window.h"
 
 typedef struct enf_shape {
-    double normal[3], offset; ///< the plane of portal 2k, normal of length 1
-    double centre[3], radius; ///< a sphere around the corners
-    double low[3], high[3];   ///< the box of its corners
-    int32_t flat_axis;        ///< all corners have the same coordinate along this axis; -1: no such axis
-    int32_t first, count;     ///< of its corners in outlines
-    int32_t axes[2];          ///< seen along the third axis (from its far end) it turns counter-clockwise
+    double normal[3], offset;  ///< the plane of portal 2k, normal of length 1
+    double centre[3], radius;  ///< a sphere around the corners
+    double low[3], high[3];    ///< the box of its corners
+    double middle[3], half[3]; ///< the same, and a bit: from its middle, this far along each axis
+    int32_t flat_axis;         ///< all corners have the same coordinate along this axis; -1: no such axis
+    int32_t first, count;      ///< of its corners in corners; they are those of the outline
+    int32_t axes[2];           ///< seen along the third axis (from its far end) it turns counter-clockwise
 } enf_shape;
 
 typedef struct enf_shapes {
     const enf_portal_graph *graph; ///< not owned
     enf_shape *shapes;             ///< per opening
-    double (*outlines)[3];         ///< of windings with over 64 corners, a rectangle around them
+    double (*corners)[3];          ///< of outlines: the windings, or a rectangle around one with over 64
+    double *outlines;              ///< the same as outlines, three times count + ENF_OUTLINE_MORE a piece
     bool *cell_is_convex;          ///< per cell
 
     // World units, both.
@@ -31,13 +33,21 @@ typedef struct enf_shapes {
 bool enf_shapes_make(enf_shapes *shapes, const enf_portal_graph *graph);
 void enf_shapes_free(enf_shapes *shapes);
 
-static inline const double (*enf_shape_outline(const enf_shapes *shapes, int32_t opening))[3] {
-    return (const double(*)[3])shapes->outlines + shapes->shapes[opening].first;
+static inline const double (*enf_shape_corners(const enf_shapes *shapes, int32_t opening))[3] {
+    return (const double(*)[3])shapes->corners + shapes->shapes[opening].first;
+}
+
+static inline enf_outline enf_shape_outline(const enf_shapes *shapes, int32_t opening) {
+    const size_t first = (size_t)shapes->shapes[opening].first, count = (size_t)shapes->shapes[opening].count,
+                 places = count + ENF_OUTLINE_MORE;
+    const double *x = shapes->outlines + 3 * (first + ENF_OUTLINE_MORE * (size_t)opening);
+    return (enf_outline){(int32_t)count, {x, x + places, x + 2 * places}};
 }
 
 /// The whole outline of a directed portal's opening as a window.
 static inline void enf_shape_window(const enf_shapes *shapes, int32_t portal, enf_window *window) {
-    enf_window_copy(window, enf_shape_outline(shapes, portal >> 1), shapes->shapes[portal >> 1].count);
+    const enf_outline outline = enf_shape_outline(shapes, portal >> 1);
+    enf_window_take(window, &outline);
 }
 
 /// The height of a point above the plane of a directed portal: positive beyond it.

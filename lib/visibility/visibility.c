@@ -156,10 +156,9 @@ static enf_status cast(ladder *ladder, enf_error *error) {
         !enf_sightings_new(&ladder->sightings, wants_lines ? ladder->graph->cell_count : 0,
                            options->want_witnesses))
         return enf_fail_memory(error, "the sight lines");
-    ladder->cast = (enf_cast){.sight = &ladder->sight, .facing = &ladder->facing, .bodies = options->bodies};
+    ladder->cast = (enf_cast){.sight = &ladder->sight, .facing = &ladder->facing};
     enf_status status = enf_cast_run(&ladder->cast, wants_lines ? &ladder->sightings : NULL, place, error);
     enf_bits_free(&ladder->facing);
-    ladder->visibility->met = ladder->cast.met;
     if (status) return status;
     set_cells(ladder->graph, &ladder->cast.beams, &ladder->visibility->pvs);
     if (wants_lines && !enf_sightings_symmetrise(&ladder->sightings))
@@ -276,7 +275,6 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
 
 void enf_visibility_free(enf_visibility *visibility) {
     enf_pvs_free(&visibility->pvs);
-    enf_bits_free(&visibility->met);
     for (int64_t i = 0; visibility->long_witnesses && i < visibility->witness_count; i++)
         free(visibility->long_witnesses[i]);
     free(visibility->long_witnesses);

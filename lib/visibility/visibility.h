@@ -3,9 +3,7 @@
 #ifndef ENF_VISIBILITY_VISIBILITY_H
 #define ENF_VISIBILITY_VISIBILITY_H
 
-#include "visibility/bits.h"
 #include "visibility/line.h"
-#include "visibility/bodies.h"
 #include "visibility/portal_graph.h"
 #include "visibility/pvs.h"
 #include "visibility/stab.h"
@@ -33,7 +31,6 @@ typedef struct enf_visibility_options {
     enf_method method;
     int threads; ///< at least 1; the result is the same for any number
     bool want_witnesses;
-    const enf_bodies *bodies; ///< may be null: bodies in the cells that are asked for, too (enf_visibility.met)
 
     /// May be null; false cancels. Called by the caller's own thread only.
     bool (*progress)(void *user, const char *stage, double fraction);
@@ -50,10 +47,6 @@ typedef struct enf_visibility_options {
 typedef struct enf_visibility {
     enf_method method;
     enf_pvs pvs; ///< symmetric
-
-    /// With parts, from the rung hourglass on: bit k of row c: part k may be seen from cell c. Lines from a part
-    /// to another exist only if each is met by the other's cell.
-    enf_bits met;
 
     // If wanted: one for each unordered pair of cells that was proved visible.
     enf_line *witnesses;         ///< witness_count; from the first cell of the pair to the second

@@ -59,8 +59,10 @@ static bool add_plane(enf_portal_graph *graph, const enf_file_view *view, const 
         enf_window_copy(&next, polygon_corners(view, &polygons[i]), polygons[i].vertex_count);
         enf_hull_extend(&hull, &next, axes, 0);
     }
-    return enf_portal_graph_add(graph, portal->to, portal->from, (const double(*)[3])hull.corners,
-                                hull.count);
+    double corners[ENF_WINDOW_MOST][3];
+    const enf_outline outline = enf_window_outline(&hull);
+    for (int32_t i = 0; i < hull.count; i++) enf_outline_corner(&outline, i, corners[i]);
+    return enf_portal_graph_add(graph, portal->to, portal->from, (const double(*)[3])corners, hull.count);
 }
 
 enf_status enf_world_graph_make(enf_portal_graph *graph, const enf_file_view *view, enf_error *error) {

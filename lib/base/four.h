@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Four doubles at a time, as GNU vectors: the compiler makes of them what the machine has. Sums and products
+// are rounded as those of single doubles are, so results do not depend on it.
+#ifndef ENF_BASE_FOUR_H
+#define ENF_BASE_FOUR_H
+
+#include <stdint.h>
+
+/// Functions marked so are compiled for wider registers, too; which one runs is found out at the start. (The
+/// thread sanitizer is not ready by then.)
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__) && defined(__GNUC__) && \
+    !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define ENF_WIDE_TOO __attribute__((target_clones("avx2", "default")))
+#else
+#define ENF_WIDE_TOO
+#endif
+
+/// For what such functions call, as clones are made of them alone.
+#define ENF_PART_OF_WIDE static inline __attribute__((always_inline))
+
+#pragma GCC diagnostic ignored \
+    "-Wpsabi" // how vectors are passed does not matter: all that takes them is inlined
+
+typedef double enf_four __attribute__((vector_size(32)));
+typedef int64_t enf_four_mask __attribute__((vector_size(32))); ///< -1: yes, 0: no, as comparisons make them
+typedef double enf_four_anywhere __attribute__((vector_size(32), aligned(8), may_alias));
+
+enum { ENF_FOUR = 4 };
+
+ENF_PART_OF_WIDE enf_four enf_four_load(const double *from) {
+    return *(const enf_four_anywhere *)from;
+}
+
+ENF_PART_OF_WIDE void enf_four_store(double *to, enf_four four) {
+    *(enf_four_anywhere *)to = four;
+}
+
+ENF_PART_OF_WIDE enf_four enf_four_all(double value) {
+    return (enf_four){value, value, value, value};
+}
+
+ENF_PART_OF_WIDE enf_four enf_four_choose(enf_four_mask which, enf_four yes, enf_four no) {
+    return (enf_four)((which & (enf_four_mask)yes) | (~which & (enf_four_mask)no));
+}
+
+ENF_PART_OF_WIDE enf_four enf_four_abs(enf_four four) {
+    return (enf_four)((enf_four_mask)four & INT64_MAX);
+}
+
+/// Of numbers that are no NaN.
+ENF_PART_OF_WIDE enf_four enf_four_max(enf_four a, enf_four b) {
+    return enf_four_choose(a > b, a, b);
+}
+
+ENF_PART_OF_WIDE enf_four enf_four_min(enf_four a, enf_four b) {
+    return enf_four_choose(a < b, a, b);
+}
+
+/// Bits 0 to 3.
+ENF_PART_OF_WIDE unsigned enf_four_bits(enf_four_mask mask) {
+    const enf_four_mask bits = mask & (enf_four_mask){1, 2, 4, 8};
+    return (unsigned)((bits[0] | bits[1]) | (bits[2] | bits[3]));
+}
+
+#endif
