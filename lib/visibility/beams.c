@@ -28,8 +28,16 @@ typedef struct kept_window {
     double at[3][KEPT_MOST + ENF_OUTLINE_MORE];
 } kept_window;
 
+/// What beams come from: a directed portal, or a body.
+typedef struct source {
+    int32_t portal; ///< -1: a body
+    enf_body body;
+    const enf_bodies *bodies; ///< asked for; or null
+    uint64_t *met;            ///< a row of those
+} source;
+
 typedef struct waiting {
-    double depth; ///< of its centre above the source's plane: nearer ones go first
+    double depth; ///< how far from the source: nearer ones go first
     int32_t portal;
 } waiting;
 
@@ -45,6 +53,7 @@ struct enf_beams {
     waiting *heap; ///< portals that wait
     int32_t heap_count;
     int64_t visits;
+    source source;
     enf_separators separators;
     enf_window window, merged;
 };
@@ -93,18 +102,36 @@ static bool is_nearer(const enf_beams *beams, const waiting *a, const waiting *b
     return (a->portal & 1) < (b->portal & 1);
 }
 
+/// Are there bodies in a cell that have not been met?
+static bool has_bodies(const source *source, int32_t cell) {
+    const enf_bodies *bodies = source->bodies;
+    for (int32_t k = bodies->cell_first[cell]; k < bodies->cell_first[cell + 1]; k++)
+        if (!enf_bit_get(source->met, k)) return true;
+    return false;
+}
+
 /// Is there anything to look at behind a portal?
 static bool is_open_behind(const enf_beams *beams, int32_t portal) {
+    const source *source = &beams->source;
+    if (source->bodies && has_bodies(source, enf_portal_to(beams->shapes->graph, portal))) return true;
     const enf_follows *follows = beams->follows;
     for (int32_t k = follows->first[portal]; k < follows->first[portal + 1]; k++)
         if (enf_bit_get(beams->open, follows->portals[k])) return true;
     return false;
 }
 
-static void push(enf_beams *beams, int32_t source, int32_t portal) {
-    if (!is_open_behind(beams, portal)) return;
+/// How far from the source a portal is: above its plane, or from the middle of a body, squared.
+static double find_depth(const enf_beams *beams, int32_t portal) {
     const double *centre = beams->shapes->shapes[portal >> 1].centre;
-    const waiting new = {enf_shape_height(beams->shapes, source, centre), portal};
+    if (beams->source.portal >= 0) return enf_shape_height(beams->shapes, beams->source.portal, centre);
+    const double *middle = beams->source.body.middle;
+    const double way[3] = {centre[0] - middle[0], centre[1] - middle[1], centre[2] - middle[2]};
+    return enf_dot(way, way);
+}
+
+static void push(enf_beams *beams, int32_t portal) {
+    if (!is_open_behind(beams, portal)) return;
+    const waiting new = {find_depth(beams, portal), portal};
     int32_t at = beams->heap_count++;
     for (; at > 0 && is_nearer(beams, &new, &beams->heap[(at - 1) / 2]); at = (at - 1) / 2)
         beams->heap[at] = beams->heap[(at - 1) / 2];
@@ -156,18 +183,18 @@ static void keep(enf_beams *beams, int32_t portal, const enf_window *window, enf
 }
 
 /// A portal is reached for the first time.
-static void reach(enf_beams *beams, int32_t source, int32_t portal, enf_remains remains) {
+static void reach(enf_beams *beams, int32_t portal, enf_remains remains) {
     beam *beam = &beams->beams[portal];
     beam->kept = -1;
     beam->growths = 0;
     keep(beams, portal, &beams->window, remains);
     beam->state = BEAM_REACHED;
     beams->reached[beams->reached_count++] = portal;
-    push(beams, source, portal);
+    push(beams, portal);
 }
 
 /// Merges the window into what was reached before.
-static void merge(enf_beams *beams, int32_t source, int32_t portal, enf_remains remains) {
+static void merge(enf_beams *beams, int32_t portal, enf_remains remains) {
     beam *beam = &beams->beams[portal];
     const enf_shape *shape = &beams->shapes->shapes[portal >> 1];
     enf_window *merged = &beams->merged;
@@ -178,43 +205,99 @@ static void merge(enf_beams *beams, int32_t source, int32_t portal, enf_remains 
         beam->growths++;
     }
     keep(beams, portal, merged, remains);
-    if (beam->state == BEAM_REACHED) push(beams, source, portal);
+    if (beam->state == BEAM_REACHED) push(beams, portal);
 }
 
 // ---------------------------------------------------------------------------------------------- casting
 
+/// The separators between the source and what its beams reach of a portal.
+static void find_separators(enf_beams *beams, int32_t via) {
+    const enf_outline to = outline_of(beams, via);
+    int32_t portal = beams->source.portal;
+    if (via == portal) {
+        enf_separators_begin(&beams->separators, beams->shapes, via);
+    } else if (portal >= 0) {
+        const enf_outline from = enf_shape_outline(beams->shapes, portal >> 1);
+        enf_separators_between(&beams->separators, beams->shapes, &from, portal, &to, via);
+    } else {
+        enf_separators_from_body(&beams->separators, beams->shapes, &beams->source.body, &to, via);
+    }
+}
+
+/// Notes the bodies in the cell behind a portal that the separators leave something of.
+static void meet_bodies(enf_beams *beams, int32_t via, bool *ready) {
+    const enf_bodies *bodies = beams->source.bodies;
+    int32_t cell = enf_portal_to(beams->shapes->graph, via);
+    for (int32_t body = bodies->cell_first[cell]; body < bodies->cell_first[cell + 1]; body++) {
+        if (enf_bit_get(beams->source.met, body)) continue;
+        if (!*ready) find_separators(beams, via);
+        *ready = true;
+        int32_t first = bodies->corner_first[body];
+        if (enf_separators_meet(&beams->separators, (const double(*)[3])(bodies->corners + first),
+                                bodies->corner_first[body + 1] - first))
+            enf_bit_set(beams->source.met, body);
+    }
+}
+
 /// From one portal into its cell and out of the others.
-static void spread(enf_beams *beams, int32_t source, int32_t via) {
+static void spread(enf_beams *beams, int32_t via) {
     const enf_follows *follows = beams->follows;
-    bool ready = via == source;
-    if (ready) enf_separators_begin(&beams->separators, beams->shapes, source);
+    bool ready = false;
+    if (beams->source.bodies) meet_bodies(beams, via, &ready);
     for (int32_t k = follows->first[via]; k < follows->first[via + 1]; k++) {
         int32_t next = follows->portals[k];
         if (!enf_bit_get(beams->open, next)) continue;
-        if (!ready) {
-            const enf_outline from = enf_shape_outline(beams->shapes, source >> 1),
-                              to = outline_of(beams, via);
-            enf_separators_between(&beams->separators, beams->shapes, &from, source, &to, via);
-            ready = true;
-        }
+        if (!ready) find_separators(beams, via);
+        ready = true;
         enf_remains remains = enf_separators_cut(&beams->separators, beams->shapes, next, &beams->window);
         if (remains == ENF_REMAINS_NOTHING) continue;
         if (beams->beams[next].state == BEAM_NONE)
-            reach(beams, source, next, remains);
+            reach(beams, next, remains);
         else
-            merge(beams, source, next, remains);
+            merge(beams, next, remains);
+    }
+}
+
+static void begin(enf_beams *beams) {
+    for (int32_t i = 0; i < beams->reached_count; i++) beams->beams[beams->reached[i]].state = BEAM_NONE;
+    beams->reached_count = beams->heap_count = beams->kept_count = 0;
+}
+
+static void spread_all(enf_beams *beams) {
+    while (beams->heap_count > 0) {
+        beams->visits++;
+        spread(beams, pop(beams));
     }
 }
 
 int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals) {
-    for (int32_t i = 0; i < beams->reached_count; i++) beams->beams[beams->reached[i]].state = BEAM_NONE;
-    beams->reached_count = beams->heap_count = beams->kept_count = 0;
+    begin(beams);
+    beams->source.portal = source;
+    beams->source.bodies = NULL;
     memcpy(beams->open, enf_bits_row(beams->facing, source), beams->facing->row_words * sizeof(uint64_t));
-    spread(beams, source, source);
-    while (beams->heap_count > 0) {
-        beams->visits++;
-        spread(beams, source, pop(beams));
-    }
+    spread(beams, source);
+    spread_all(beams);
     *portals = beams->reached;
     return beams->reached_count;
+}
+
+void enf_beams_cast_body(enf_beams *beams, const enf_bodies *bodies, int32_t cell, int32_t body,
+                         uint64_t *met) {
+    const enf_portal_graph *graph = beams->shapes->graph;
+    begin(beams);
+    beams->source.portal = -1;
+    beams->source.bodies = bodies;
+    beams->source.met = met;
+    int32_t first = bodies->corner_first[body];
+    enf_body_make(&beams->source.body, (const double(*)[3])(bodies->corners + first),
+                  bodies->corner_first[body + 1] - first, beams->shapes->tolerance / 8);
+    memset(beams->open, 0, beams->facing->row_words * sizeof *beams->open);
+    for (int32_t k = bodies->cell_first[cell]; k < bodies->cell_first[cell + 1]; k++) enf_bit_set(met, k);
+    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
+        const uint64_t *row = enf_bits_row(beams->facing, graph->cell_portals[k]);
+        for (size_t w = 0; w < beams->facing->row_words; w++) beams->open[w] |= row[w];
+    }
+    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
+        reach(beams, graph->cell_portals[k], ENF_REMAINS_WHOLE);
+    spread_all(beams);
 }

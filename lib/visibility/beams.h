@@ -11,6 +11,7 @@
 #define ENF_VISIBILITY_BEAMS_H
 
 #include "visibility/bits.h"
+#include "visibility/bodies.h"
 #include "visibility/follows.h"
 #include "visibility/shapes.h"
 
@@ -25,6 +26,11 @@ void enf_beams_free(enf_beams *beams);
 /// Casts the beams of a directed portal. *portals receives the portals that they reach, in the order in which
 /// they were reached first; returns how many. Valid until the next call.
 int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals);
+
+/// Casts the beams of one of the bodies, through all portals of its cell. In *met, a row of bits that was
+/// zero, those of the bodies are set that the beams meet, and those in its own cell.
+void enf_beams_cast_body(enf_beams *beams, const enf_bodies *bodies, int32_t cell, int32_t body,
+                         uint64_t *met);
 
 /// What they reach of one of these portals.
 void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window);

@@ -9,12 +9,12 @@
 typedef struct enf_bodies {
     int32_t count;
     int32_t cell_count;    ///< of the graph
-    int32_t *cell_first;   ///< cell_count + 1 offsets: the parts in each cell; every cell has one or more
+    int32_t *cell_first;   ///< cell_count + 1 offsets: the bodies in each cell, which is convex
     int32_t *owner;        ///< what each is a part of; ascending within a cell
     int32_t *corner_first; ///< count + 1 offsets into corners
-    double (*corners)[3];  ///< the hull of a part's corners holds the part
+    double (*corners)[3];  ///< the hull of a body's corners holds the body
 } enf_bodies;
 
-void enf_bodies_free(enf_bodies *parts);
+void enf_bodies_free(enf_bodies *bodies);
 
 #endif

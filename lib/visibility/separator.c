@@ -15,12 +15,18 @@ static const double band_tolerances = 0x1p14;
 /// nearer than they look by `contact_error`, as corners within the band count for all that is near them.
 static const double near = 0x1p-12, contact_error = 0x1p-30;
 
+/// Of the size of the world: bodies that touch a window are taken to be this far from it. Sight is lost by it
+/// only if it takes off less than that of a body, in a corner that touches the window, and rounding is
+/// against it; what a partition of the air makes of the world is not better than that.
+static const double body_gap = 0x1p-20;
+
 /// Two windows and the way between them.
 typedef struct passage {
     const enf_shapes *shapes;
     const enf_outline *one, *other; ///< planes go through the edges of one
     bool turns;                     ///< one turns counter-clockwise against the sight
     bool forward;                   ///< sight goes from one to other
+    bool is_second;                 ///< planes through the edges of other have been found already
     double gap;                     ///< the windows are at least this far apart; negative: no telling
     double span;                    ///< no way from corner to corner is longer, all axes summed up
 } passage;
@@ -238,6 +244,7 @@ ENF_WIDE_TOO void enf_separators_between(enf_separators *separators, const enf_s
     passage.other = from;
     passage.turns = to_portal & 1;
     passage.forward = false;
+    passage.is_second = true;
     add_planes(separators, &passage);
     close_separators(separators);
 }
@@ -246,4 +253,77 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
                          int32_t from_portal, const enf_window *to, int32_t to_portal) {
     const enf_outline one = enf_window_outline(from), two = enf_window_outline(to);
     enf_separators_between(separators, shapes, &one, from_portal, &two, to_portal);
+}
+
+/// The planes through four edges of the body that touch the window. They have the body behind them if they do
+/// not come into the wedge of the two faces.
+ENF_PART_OF_WIDE tangents find_body_tangents(const passage *passage, const enf_body *body, int32_t first,
+                                             double side) {
+    enf_four a[3], edge[3], left[3], right[3], normal[3];
+    tangents tangents;
+    for (int axis = 0; axis < 3; axis++) {
+        a[axis] = enf_four_load(body->from[axis] + first);
+        edge[axis] = side * enf_four_load(body->along[axis] + first);
+        left[axis] = enf_four_load(body->left[axis] + first);
+        right[axis] = enf_four_load(body->right[axis] + first);
+    }
+    turn_to(passage->one, a, edge, normal);
+    const enf_four square = dot_four(normal, normal), inverse = inverse_root(square);
+    for (int axis = 0; axis < 3; axis++) tangents.normal[axis] = normal[axis] * inverse;
+    tangents.tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse;
+    tangents.behind = dot_four(tangents.normal, a);
+    tangents.front = lowest(passage->one, tangents.normal);
+    tangents.good = (square > 0) & (inverse < HUGE_VAL) & (dot_four(tangents.normal, left) <= 0) &
+                    (dot_four(tangents.normal, right) <= 0) &
+                    (tangents.behind <= tangents.front + passage->shapes->tolerance);
+    return tangents;
+}
+
+/// The planes through edges of the body. `one` of the passage is the window, `other` the body.
+ENF_PART_OF_WIDE void add_body_planes(enf_separators *separators, const passage *passage,
+                                      const enf_body *body) {
+    const double swing = find_swing(passage, passage->gap), tolerance = passage->shapes->tolerance;
+    for (int32_t first = 0; first < body->edge_count; first += ENF_FOUR)
+        for (int side = -1; side < 2; side += 2) {
+            if (separators->count > ENF_SEPARATORS_MOST - ENF_FOUR) return;
+            const tangents tangents = find_body_tangents(passage, body, first, side);
+            const int64_t rest = body->edge_count - first;
+            const enf_four slack = tolerance * (tangents.tilt + swing);
+            const enf_four_mask good =
+                tangents.good & ((enf_four_mask){0, 1, 2, 3} < rest) & (slack <= passage->shapes->extent);
+            add_good(separators, tangents.normal, tangents.front - slack, good);
+        }
+}
+
+ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes,
+                                           const enf_body *body, const enf_outline *to, int32_t to_portal) {
+    const enf_shape *shape = &shapes->shapes[to_portal >> 1];
+    double apart[3], span = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double way = fabs(shape->middle[axis] - body->middle[axis]),
+                     halves = shape->half[axis] + body->half[axis];
+        apart[axis] = way > halves ? way - halves : 0;
+        span += way + halves;
+    }
+    const passage passage = {.shapes = shapes,
+                             .one = to,
+                             .other = &body->corners,
+                             .turns = to_portal & 1,
+                             .gap = fmax(sqrt(enf_dot(apart, apart)), shapes->extent * body_gap),
+                             .span = span};
+    separators->count = 0;
+    add_far_planes(separators, &passage);
+    add_body_planes(separators, &passage, body);
+    close_separators(separators);
+}
+
+bool enf_separators_meet(const enf_separators *separators, const double (*points)[3], int32_t count) {
+    for (int32_t i = 0; i < separators->count; i++) {
+        const double normal[3] = {separators->normal[0][i], separators->normal[1][i],
+                                  separators->normal[2][i]};
+        int32_t k = 0;
+        while (k < count && enf_dot(normal, points[k]) < separators->least[i]) k++;
+        if (k == count) return false;
+    }
+    return true;
 }

@@ -4,6 +4,7 @@
 #ifndef ENF_VISIBILITY_SEPARATOR_H
 #define ENF_VISIBILITY_SEPARATOR_H
 
+#include "visibility/body.h"
 #include "visibility/shapes.h"
 #include "visibility/window.h"
 
@@ -29,6 +30,14 @@ void enf_separators_between(enf_separators *separators, const enf_shapes *shapes
 /// The same, for windows.
 void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
                          int32_t from_portal, const enf_window *to, int32_t to_portal);
+
+/// The planes that part a body from `to`, a window of the directed portal `to_portal`, through an edge of one
+/// and a corner of the other: lines from the body that pass `to` stay in front from there on.
+void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes, const enf_body *body,
+                              const enf_outline *to, int32_t to_portal);
+
+/// May they leave something of the hull of these points?
+bool enf_separators_meet(const enf_separators *separators, const double (*points)[3], int32_t count);
 
 typedef enum enf_remains { ENF_REMAINS_NOTHING, ENF_REMAINS_PART, ENF_REMAINS_WHOLE } enf_remains;
 

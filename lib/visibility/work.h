@@ -10,7 +10,7 @@
 #include "visibility/team.h"
 
 /// Their numbers in checkpoints.
-enum { ENF_STAGE_CAST = 1, ENF_STAGE_SETTLE = 2 };
+enum { ENF_STAGE_CAST = 1, ENF_STAGE_SETTLE = 2, ENF_STAGE_BODIES = 3 };
 
 /// What a stage is. Results must depend on the cell alone, not on who does what and when.
 typedef struct enf_work {
