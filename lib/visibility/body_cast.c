@@ -2,6 +2,7 @@
 #include "visibility/body_cast.h"
 
 #include "base/array.h"
+#include "base/hash.h"
 #include "base/timer.h"
 #include "visibility/beams.h"
 #include "visibility/coding.h"
@@ -156,7 +157,10 @@ enf_status enf_body_cast_run(enf_body_cast *cast, enf_workplace *place, enf_erro
     enf_status status = make_casting(&casting, threads) ? ENF_OK : enf_fail_memory(error, "the beams");
     if (!status) {
         find_cost(&casting);
+        const enf_bodies *bodies = cast->bodies;
+        size_t size = (size_t)bodies->corner_first[bodies->count] * sizeof *bodies->corners;
         const enf_work work = {.stage = ENF_STAGE_BODIES,
+                               .key = enf_hash64(bodies->corners, size, 0),
                                .cell_count = cast->shapes->graph->cell_count,
                                .cost = casting.cost,
                                .user = &casting,

@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "base/memory.h"
 #include "base/timer.h"
+#include "visibility/body_cast.h"
 #include "visibility/cast.h"
 #include "visibility/facing.h"
 #include "visibility/settle.h"
@@ -144,6 +145,20 @@ static enf_status face(ladder *ladder, enf_error *error) {
     return status;
 }
 
+/// With bodies, beams come from those.
+static enf_status cast_bodies(ladder *ladder, enf_error *error) {
+    enf_visibility *visibility = ladder->visibility;
+    enf_workplace *place = place_for(ladder, "hourglass");
+    enf_body_cast cast = {
+        .shapes = &ladder->shapes, .facing = &ladder->facing, .bodies = ladder->options->bodies};
+    enf_status status = enf_body_cast_run(&cast, place, error);
+    visibility->met = cast.met;
+    visibility->body_visits = cast.visits;
+    visibility->cells_budgeted = cast.cells_budgeted;
+    if (!status) set_cells(ladder->graph, &ladder->facing, &visibility->pvs);
+    return status;
+}
+
 static bool wants_sightings(const enf_visibility_options *options) {
     return options->method > ENF_METHOD_HOURGLASS || options->want_witnesses;
 }
@@ -236,7 +251,10 @@ static enf_status climb(ladder *ladder, enf_error *error) {
     enf_method method = ladder->options->method;
     if (method == ENF_METHOD_REACH) return reach(ladder, error);
     enf_status status = face(ladder, error);
-    if (!status && method >= ENF_METHOD_HOURGLASS) status = cast(ladder, error);
+    const bool has_bodies = ladder->options->bodies != NULL;
+    if (!status && method >= ENF_METHOD_HOURGLASS && has_bodies) status = cast_bodies(ladder, error);
+    if (!status && method >= (has_bodies ? ENF_METHOD_LP : ENF_METHOD_HOURGLASS))
+        status = cast(ladder, error);
     if (!status && method >= ENF_METHOD_LP) status = settle(ladder, error);
     return status ? status : take_witnesses(ladder, error);
 }
@@ -260,7 +278,7 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
     visibility->visits = ladder.cast.visits;
     visibility->lines = ladder.cast.lines;
     visibility->jobs_stored = ladder.place.stored;
-    visibility->cells_budgeted = ladder.cast.cells_budgeted;
+    visibility->cells_budgeted += ladder.cast.cells_budgeted;
     enf_checkpoint_close(ladder.place.checkpoint);
     enf_sightings_free(&ladder.sightings);
     enf_bits_free(&ladder.cast.beams);
@@ -275,6 +293,7 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
 
 void enf_visibility_free(enf_visibility *visibility) {
     enf_pvs_free(&visibility->pvs);
+    enf_bits_free(&visibility->met);
     for (int64_t i = 0; visibility->long_witnesses && i < visibility->witness_count; i++)
         free(visibility->long_witnesses[i]);
     free(visibility->long_witnesses);

@@ -3,6 +3,8 @@
 #ifndef ENF_VISIBILITY_VISIBILITY_H
 #define ENF_VISIBILITY_VISIBILITY_H
 
+#include "visibility/bits.h"
+#include "visibility/bodies.h"
 #include "visibility/line.h"
 #include "visibility/portal_graph.h"
 #include "visibility/pvs.h"
@@ -31,6 +33,7 @@ typedef struct enf_visibility_options {
     enf_method method;
     int threads; ///< at least 1; the result is the same for any number
     bool want_witnesses;
+    const enf_bodies *bodies; ///< may be null: bodies in the cells, which are asked for, too
 
     /// May be null; false cancels. Called by the caller's own thread only.
     bool (*progress)(void *user, const char *stage, double fraction);
@@ -46,7 +49,10 @@ typedef struct enf_visibility_options {
 
 typedef struct enf_visibility {
     enf_method method;
-    enf_pvs pvs; ///< symmetric
+    enf_pvs pvs; ///< symmetric; with bodies, by `hourglass` no more than what faces each other: see `met`
+
+    /// With bodies, from the rung hourglass on: bit j of row i: bodies i and j may see each other; symmetric.
+    enf_bits met;
 
     // If wanted: one for each unordered pair of cells that was proved visible.
     enf_line *witnesses;         ///< witness_count; from the first cell of the pair to the second
@@ -57,6 +63,7 @@ typedef struct enf_visibility {
     // How much was looked at, by rung.
     int64_t portal_pairs;   ///< hourglass: directed portals that may see each other
     int64_t visits;         ///< hourglass: how often a beam came to a portal
+    int64_t body_visits;    ///< the same of beams from bodies
     int64_t lines;          ///< hourglass: sight lines that were tried
     int64_t pairs_open;     ///< lp and exact: pairs of cells that neither beams nor lines had decided
     int64_t nodes;          ///< lp and exact: portals that sequences came to

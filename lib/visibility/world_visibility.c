@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "visibility/world_visibility.h"
 
-#include "visibility/body_cast.h"
-#include "visibility/facing.h"
-
-#include <math.h>
-
-/// Cells see each other if parts of them do.
-static void join_bodies(enf_pvs *cells, const enf_bits *met, const enf_bodies *bodies) {
-    for (int32_t i = 0; i < bodies->count; i++) {
-        const uint64_t *row = enf_bits_row(met, i);
-        for (int32_t k = -1; (k = enf_bit_next(row, met->row_words, k + 1)) >= 0;)
-            enf_pvs_set(cells, bodies->owner[i], bodies->owner[k]);
+/// Cells see each other if parts of them do, in leafs that do.
+static void join_leafs(enf_pvs *cells, const enf_visibility *found, const enf_bodies *bodies, int32_t leaf,
+                       int32_t other) {
+    for (int32_t i = bodies->cell_first[leaf]; i < bodies->cell_first[leaf + 1]; i++) {
+        const uint64_t *row = found->met.words ? enf_bits_row(&found->met, i) : NULL;
+        for (int32_t k = bodies->cell_first[other]; k < bodies->cell_first[other + 1]; k++)
+            if (!row || enf_bit_get(row, k)) enf_pvs_set(cells, bodies->owner[i], bodies->owner[k]);
     }
 }
 
@@ -43,36 +39,29 @@ static void see_for_lost(enf_pvs *cells, const enf_world_air *air, const enf_fil
             if (enf_pvs_get(cells, air->parts.lost[i], other)) enf_pvs_set(cells, other, air->parts.lost[i]);
 }
 
-static enf_status cast(enf_visibility *found, const enf_world_air *air, const enf_visibility_options *options,
-                       enf_bits *met, enf_error *error) {
-    enf_shapes shapes;
-    enf_bits facing = {0};
-    enf_workplace place = {.crew = {.threads = options->threads}, .deadline = INFINITY};
-    enf_body_cast cast = {.shapes = &shapes, .facing = &facing, .bodies = &air->parts.bodies};
-    enf_status status =
-        enf_shapes_make(&shapes, &air->graph) ? ENF_OK : enf_fail_memory(error, "the portals");
-    if (!status) status = enf_facing_find(&facing, &shapes, &place.crew, error);
-    if (!status) status = enf_body_cast_run(&cast, &place, error);
-    found->visits = cast.visits;
-    *met = cast.met;
-    enf_bits_free(&facing);
-    enf_shapes_free(&shapes);
+static enf_status find_cells(enf_visibility *found, const enf_world_air *air, const enf_file_view *view,
+                             enf_error *error) {
+    enf_pvs cells;
+    enf_status status = enf_pvs_new(&cells, view->cell_count, error);
+    if (!status) {
+        for (int32_t leaf = 0; leaf < found->pvs.cell_count; leaf++)
+            for (int32_t other = 0; other < found->pvs.cell_count; other++)
+                if (enf_pvs_get(&found->pvs, leaf, other))
+                    join_leafs(&cells, found, &air->parts.bodies, leaf, other);
+        see_neighbours(&cells, view);
+        see_for_lost(&cells, air, view);
+    }
+    enf_pvs_free(&found->pvs);
+    found->pvs = cells;
     return status;
 }
 
 enf_status enf_world_visibility_run(enf_visibility *visibility, const enf_world_air *air,
                                     const enf_file_view *view, const enf_visibility_options *options,
                                     enf_error *error) {
-    if (!air->is_partitioned) return enf_visibility_run(visibility, &air->graph, options, error);
-    enf_bits met = {0};
-    *visibility = (enf_visibility){.method = options->method};
-    enf_status status = enf_pvs_new(&visibility->pvs, view->cell_count, error);
-    if (!status) status = cast(visibility, air, options, &met, error);
-    if (!status) {
-        join_bodies(&visibility->pvs, &met, &air->parts.bodies);
-        see_neighbours(&visibility->pvs, view);
-        see_for_lost(&visibility->pvs, air, view);
-    }
-    enf_bits_free(&met);
+    enf_visibility_options own = *options;
+    if (air->is_partitioned) own.bodies = &air->parts.bodies;
+    enf_status status = enf_visibility_run(visibility, &air->graph, &own, error);
+    if (!status && air->is_partitioned) status = find_cells(visibility, air, view, error);
     return status;
 }
