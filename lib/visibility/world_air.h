@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The air of a compiled world, made ready for visibility. Cells are concave and hold walls, so that their
-// portals alone tell little of what hides what. A partition of the air by its own walls has convex leafs,
-// fewer than a third of the fine cells, and what the leafs see tells what the parts of cells in them see.
+// The air of a compiled world, made ready for visibility in two ways, of which each may tell less than there
+// is to tell, and neither too little to see: the cells with their portals, and a partition by walls.
+//
+// Cells are concave and hold walls, so that their portals alone tell little of what hides what. A partition
+// of the air by its own walls has convex leafs; in buildings, where walls share planes, fewer of them than
+// there are cells. What leafs see tells what the parts of cells in them see.
 #ifndef ENF_VISIBILITY_WORLD_AIR_H
 #define ENF_VISIBILITY_WORLD_AIR_H
 
@@ -9,9 +12,10 @@
 #include "visibility/portal_graph.h"
 
 typedef struct enf_world_air {
-    bool is_partitioned;    ///< false: the cells themselves and their portals, as no tree suits this world
-    enf_portal_graph graph; ///< of the leafs
-    enf_air_parts parts;    ///< of the world's cells
+    bool uses_portals, uses_leafs; ///< at least one; what is left out costs more than it could tell
+    enf_portal_graph portals;      ///< between the world's cells; empty if it is not used
+    enf_portal_graph leafs;        ///< likewise
+    enf_air_parts parts;           ///< of the world's cells, in the leafs
 } enf_world_air;
 
 /// Needs the exact part of the file for a partition. *air is overwritten; free it in any case.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "visibility/world_visibility.h"
 
+#include <math.h>
+
 /// Cells see each other if parts of them do, in leafs that do.
 static void join_leafs(enf_pvs *cells, const enf_visibility *found, const enf_bodies *bodies, int32_t leaf,
                        int32_t other) {
@@ -56,12 +58,38 @@ static enf_status find_cells(enf_visibility *found, const enf_world_air *air, co
     return status;
 }
 
+/// Leaves of the visible sets what the portals allow, too.
+static void narrow(enf_pvs *pvs, const enf_pvs *portals) {
+    for (size_t w = 0; w < (size_t)pvs->cell_count * pvs->row_words; w++) pvs->rows[w] &= portals->rows[w];
+}
+
+/// What of the budget is left; all of it, if there is none.
+static double rest_of(double budget, double used) {
+    static const double least = 1e-3; // 0 would be no end
+    return budget > 0 ? fmax(budget - used, least) : 0;
+}
+
 enf_status enf_world_visibility_run(enf_visibility *visibility, const enf_world_air *air,
                                     const enf_file_view *view, const enf_visibility_options *options,
                                     enf_error *error) {
+    enf_visibility portals = {0};
     enf_visibility_options own = *options;
-    if (air->is_partitioned) own.bodies = &air->parts.bodies;
-    enf_status status = enf_visibility_run(visibility, &air->graph, &own, error);
-    if (!status && air->is_partitioned) status = find_cells(visibility, air, view, error);
+    enf_status status = ENF_OK;
+    *visibility = (enf_visibility){0};
+    own.want_witnesses = false;
+    if (!air->uses_leafs) return enf_visibility_run(visibility, &air->portals, &own, error);
+    if (air->uses_portals) {
+        own.checkpoint = NULL; // that is for the longer one
+        status = enf_visibility_run(&portals, &air->portals, &own, error);
+        own.budget_seconds = rest_of(options->budget_seconds, portals.seconds);
+    }
+    own.checkpoint = options->checkpoint;
+    own.bodies = &air->parts.bodies;
+    if (!status) status = enf_visibility_run(visibility, &air->leafs, &own, error);
+    if (!status) status = find_cells(visibility, air, view, error);
+    if (!status && air->uses_portals) narrow(&visibility->pvs, &portals.pvs);
+    visibility->seconds += portals.seconds;
+    visibility->cpu_seconds += portals.cpu_seconds;
+    enf_visibility_free(&portals);
     return status;
 }

@@ -6,10 +6,11 @@
 #include "visibility/visibility.h"
 #include "visibility/world_air.h"
 
-/// As enf_visibility_run, over the partition of the air: what is counted is about its leafs, but
-/// visibility->pvs is about the world's cells. A cell sees another if part of it may see part of the other
-/// through the leafs, itself, and its neighbours; never too little. Without a partition, if the portals
-/// allow it. options->want_witnesses and options->bodies are not looked at.
+/// As enf_visibility_run, but visibility->pvs is about the world's cells; what else is counted is about the
+/// leafs, if there are any. A cell sees itself, its neighbours, and what both the portals (with all that is
+/// between them taken for air) and the leafs allow that part of it sees part of: never too little, but for
+/// sight through slits thinner than the partition's tolerance. options->want_witnesses is not looked at:
+/// lines through concave cells prove nothing.
 enf_status enf_world_visibility_run(enf_visibility *visibility, const enf_world_air *air,
                                     const enf_file_view *view, const enf_visibility_options *options,
                                     enf_error *error);
