@@ -29,5 +29,6 @@ int cli_bench_soups(int argc, char **argv);
 int cli_bench_stability(int argc, char **argv);
 /// The rungs of visibility on every portal file in a folder: run time against error.
 int cli_bench_visibility(int argc, char **argv);
+int cli_bench_worlds(int argc, char **argv);
 
 #endif

@@ -12,7 +12,7 @@
 #include "format/output.h"
 #include "visibility/read_prt.h"
 #include "visibility/witness.h"
-#include "visibility/world_graph.h"
+#include "visibility/world_visibility.h"
 
 #include <inttypes.h>
 #include <signal.h>
@@ -30,15 +30,15 @@ typedef struct request {
     bool leads;           ///< alone, or rank 0: it reads, writes and speaks
 } request;
 
-/// The graph of a world file: its cells are those that it was compiled into.
-static enf_status read_world(enf_portal_graph *graph, const enf_source *source, enf_error *error) {
-    enf_world *world = NULL;
+/// A world file: its cells are those that it was compiled into.
+static enf_status read_world(cli_pvs_result *result, const enf_source *source, enf_error *error) {
     enf_error wrong = {0};
-    enf_status status = enf_world_open_memory(&world, source->data, source->size, NULL, &wrong);
-    if (status) enf_fail(error, status, "%s: %.900s", source->name, wrong.text);
-    if (!status) status = enf_world_graph_make(graph, enf_world_file(world), error);
-    enf_world_close(world);
-    return status;
+    enf_status status = enf_world_open_memory(&result->world, source->data, source->size, NULL, &wrong);
+    if (status) return enf_fail(error, status, "%s: %.900s", source->name, wrong.text);
+    const enf_file_view *view = enf_world_file(result->world);
+    result->cell_count = result->leaf_count = view->cell_count;
+    result->portal_count = view->portal_count / 2;
+    return ENF_OK;
 }
 
 /// What kind of file it is, its content says.
@@ -46,9 +46,12 @@ static enf_status read_graph(cli_pvs_result *result, enf_source *source, enf_err
     static const char magic[] = ENF_FILE_MAGIC;
     bool is_world = source->size >= strlen(magic) && memcmp(source->data, magic, strlen(magic)) == 0;
     result->input_hash = enf_hash64(source->data, source->size, 0);
-    if (is_world) return read_world(&result->graph, source, error); // its cells need not be convex
+    if (is_world) return read_world(result, source, error);
     enf_status status = enf_read_prt(&result->graph, source, error);
     if (!status) enf_portal_graph_find_non_convex(&result->graph);
+    result->cell_count = result->graph.cell_count;
+    result->portal_count = result->graph.opening_count;
+    result->leaf_count = result->graph.leaf_count ? result->graph.leaf_count : result->graph.cell_count;
     return status;
 }
 
@@ -69,20 +72,35 @@ static enf_status share_source(const enf_team *team, enf_status status, enf_sour
                            bytes->count - SHARED_HEADER - 1, error);
 }
 
+/// What stays until the end, as a world lies in it.
+typedef struct input {
+    enf_source source;
+    enf_bytes bytes; ///< of rank 0's source
+} input;
+
 /// Reads the input, unless something failed before. All processes come to the same; rank 0 alone has words
 /// for what fails.
-static enf_status load(cli_pvs_result *result, const request *request, enf_status status, enf_error *error) {
+static enf_status load(cli_pvs_result *result, const request *request, input *input, enf_status status,
+                       enf_error *error) {
     const char *path = request->inputs.items[0];
-    enf_source source = {.name = path};
-    enf_bytes bytes = {0};
+    input->source.name = path;
     result->input = strcmp(path, "-") == 0 ? "standard input" : path;
-    if (!status && request->leads) status = enf_source_open(&source, path, error);
-    if (request->team) status = share_source(request->team, status, &source, &bytes, error);
-    if (!status) status = read_graph(result, &source, error);
+    if (!status && request->leads) status = enf_source_open(&input->source, path, error);
+    if (request->team) status = share_source(request->team, status, &input->source, &input->bytes, error);
+    if (!status) status = read_graph(result, &input->source, error);
+    if (!status && result->world && request->witness)
+        status = enf_fail(error, ENF_BAD_USAGE,
+                          "--witness: %s is a world, whose cells are not convex; lines can be had for portal "
+                          "files only",
+                          result->input);
     if (!request->leads) error->text[0] = 0;
-    enf_source_close(&source);
-    enf_bytes_free(&bytes);
     return status;
+}
+
+static void close_input(cli_pvs_result *result, input *input) {
+    enf_world_close(result->world);
+    enf_source_close(&input->source);
+    enf_bytes_free(&input->bytes);
 }
 
 /// All are opened before the work begins, so that a wrong path is told at once.
@@ -116,8 +134,19 @@ static enf_status write_outputs(const request *request, const cli_pvs_result *re
     return status;
 }
 
+static enf_status find_in_world(cli_pvs_result *result, enf_error *error) {
+    enf_world_air air;
+    const enf_file_view *view = enf_world_file(result->world);
+    enf_status status = enf_world_air_make(&air, view, error);
+    if (!status) status = enf_world_visibility_run(&result->visibility, &air, view, &result->options, error);
+    enf_world_air_free(&air);
+    return status;
+}
+
 static enf_status find(cli_pvs_result *result, const request *request, enf_error *error) {
-    enf_status status = enf_visibility_run(&result->visibility, &result->graph, &result->options, error);
+    enf_status status =
+        result->world ? find_in_world(result, error)
+                      : enf_visibility_run(&result->visibility, &result->graph, &result->options, error);
     if (!status) return ENF_OK;
     enf_error why = *error;
     if (!request->leads)
@@ -178,13 +207,14 @@ static enf_status finish(cli_pvs_result *result, const request *request, outputs
 static int run(const request *request) {
     cli_pvs_result result = {0};
     enf_error error = {0};
+    input input = {0};
     outputs outputs = {0};
     cli_progress progress = {0};
     double started = enf_timer_now();
     prepare(&result, request, &progress);
     if (request->leads) cli_progress_report(&progress, "read", 0);
     enf_status status = request->leads ? open_outputs(request, &outputs, &error) : ENF_OK;
-    status = load(&result, request, status, &error);
+    status = load(&result, request, &input, status, &error);
     bool begun = !status; // from here on, who fails fails alone
     if (begun) status = find(&result, request, &error);
     bool alone = begun && status;
@@ -197,6 +227,7 @@ static int run(const request *request) {
     if (!status && request->leads && !request->quiet) tell(&result, request);
     enf_visibility_free(&result.visibility);
     enf_portal_graph_free(&result.graph);
+    close_input(&result, &input);
     if (status && error.text[0]) fprintf(stderr, "%s\n", error.text);
     if (alone) cli_team_abort(request->team, (int)status);
     return (int)status;

@@ -57,6 +57,7 @@ static void put_visibility(enf_json *json, const enf_visibility *visibility) {
     enf_json_whole(json, "portal_pairs", visibility->portal_pairs);
     enf_json_whole(json, "visits", visibility->visits);
     enf_json_whole(json, "lines", visibility->lines);
+    enf_json_whole(json, "body_visits", visibility->body_visits);
     enf_json_whole(json, "pairs_open", visibility->pairs_open);
     enf_json_whole(json, "nodes", visibility->nodes);
     put_stabs(json, &visibility->stabs);
@@ -82,15 +83,14 @@ static void put_options(enf_json *json, const enf_visibility_options *options) {
 }
 
 void cli_pvs_report_json(const cli_pvs_result *result, FILE *out) {
-    const enf_portal_graph *graph = &result->graph;
     enf_json json = {.file = out};
     enf_json_begin_object(&json, NULL);
     enf_json_text(&json, "program", "enfilade " ENF_VERSION_TEXT);
     put_input(&json, result);
-    enf_json_whole(&json, "leafs", graph->leaf_count ? graph->leaf_count : graph->cell_count);
-    enf_json_whole(&json, "cells", graph->cell_count);
-    enf_json_whole(&json, "portals", graph->opening_count);
-    enf_json_whole(&json, "non_convex_cells", graph->non_convex_cells);
+    enf_json_whole(&json, "leafs", result->leaf_count);
+    enf_json_whole(&json, "cells", result->cell_count);
+    enf_json_whole(&json, "portals", result->portal_count);
+    enf_json_whole(&json, "non_convex_cells", result->graph.non_convex_cells);
     put_visibility(&json, &result->visibility);
     enf_json_number(&json, "seconds", result->seconds);
     enf_json_whole(&json, "peak_bytes", (int64_t)result->peak_bytes);
@@ -111,9 +111,9 @@ void cli_pvs_report_summary(const cli_pvs_result *result, const char *output, FI
     fprintf(out,
             "%s: %" PRId32 " cells, %" PRId32 " portals; by %s %" PRId64
             " pairs, a cell sees %.1f on average; %.2f s, %.0f MB\n",
-            output, result->graph.cell_count, result->graph.opening_count,
-            enf_method_name(visibility->method), enf_pvs_pairs(&visibility->pvs),
-            enf_pvs_mean_seen(&visibility->pvs), result->seconds, (double)result->peak_bytes / 1e6);
+            output, result->cell_count, result->portal_count, enf_method_name(visibility->method),
+            enf_pvs_pairs(&visibility->pvs), enf_pvs_mean_seen(&visibility->pvs), result->seconds,
+            (double)result->peak_bytes / 1e6);
     if (cli_pvs_is_late(result))
         fprintf(out,
                 "the budget of %g s ran out for the beams of %" PRId64 " cells and for %" PRId64
@@ -130,7 +130,7 @@ void cli_pvs_report_verbose(const cli_pvs_result *result, FILE *out) {
     if (result->options.checkpoint)
         fprintf(out, "checkpoint     %8" PRId64 " results were there already\n", visibility->jobs_stored);
     fprintf(out, "beams          %8" PRId64 " portal pairs by %" PRId64 " visits; %" PRId64 " sight lines\n",
-            visibility->portal_pairs, visibility->visits, visibility->lines);
+            visibility->portal_pairs, visibility->visits + visibility->body_visits, visibility->lines);
     fprintf(out,
             "sequences      %8" PRId64 " open pairs of cells by %" PRId64 " nodes, of which %" PRId64
             " were decided, %" PRId64 " in whole numbers; the longest line passes %" PRId32 " portals\n",

@@ -10,7 +10,9 @@
 typedef struct cli_pvs_result {
     const char *input; ///< its name
     uint64_t input_hash;
-    enf_portal_graph graph;
+    enf_portal_graph graph;                       ///< of a portal file
+    struct enf_world *world;                      ///< of a world file; or null
+    int32_t cell_count, portal_count, leaf_count; ///< of the input
     enf_visibility_options options;
     enf_visibility visibility;
     int processes;  ///< that worked on it
