@@ -20,8 +20,6 @@ enum { VECTORS = 3 }; // from the line's first point to: the edge's ends, the li
 static const double side_error = 7.78e-16;
 /// Below this, products may have lost digits by underflow.
 static const double side_least = 1e-250;
-/// Of the way between a line's points: portals this far apart along a line are in order for sure.
-static const double order_least = 1e-6;
 
 typedef struct witness_numbers {
     mpz_t origin[3];
@@ -161,28 +159,10 @@ static int side(enf_witness_checker *checker, const witness_line *line, const do
 
 // ---------------------------------------------------------------------------------------------- order
 
-/// The share of the way from -> to at which the line comes to the portal, about.
-static double find_share(const enf_portal_graph *graph, int32_t portal, const witness_line *line) {
-    int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
-    const double *origin = graph->corners[first];
-    double normal[3] = {0}, height = 0, fall = 0;
-    for (int32_t c = first + 1; c + 1 < end; c++)
-        for (int i = 0; i < 3; i++) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            const double *a = graph->corners[c], *b = graph->corners[c + 1];
-            normal[i] += (a[j] - origin[j]) * (b[k] - origin[k]) - (a[k] - origin[k]) * (b[j] - origin[j]);
-        }
-    for (int i = 0; i < 3; i++) {
-        height += normal[i] * (line->from[i] - origin[i]);
-        fall += normal[i] * (line->from[i] - line->to[i]);
-    }
-    return height / fall;
-}
-
 /// Does the line come to the one portal before the other? By doubles if that is clear.
 static bool in_order(enf_witness_checker *checker, int32_t first, int32_t second, const witness_line *line) {
-    double before = find_share(checker->graph, first, line), after = find_share(checker->graph, second, line);
-    if (after - before > order_least * (1 + fabs(before) + fabs(after))) return true;
+    if (!line->is_long && enf_witness_surely_in_order(checker->graph, line->from, line->to, first, second))
+        return true;
     witness_numbers *numbers = checker->numbers;
     mpq_t end[2][3];
     for (int e = 0; e < 2; e++)
