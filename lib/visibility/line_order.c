@@ -152,7 +152,8 @@ typedef struct place {
 /// Doubles are not asked about lines that rise by less than this, of their length.
 static const double steep = 0x1p-20;
 
-/// The line goes through the portal within the shapes' tolerance of its plane.
+/// The line goes through the portal within the shapes' tolerance of its plane; so far off are heights, too,
+/// of points that are not too far outside of the world.
 static place find_place_quickly(const enf_shapes *shapes, int32_t portal, const enf_line *line,
                                 double length) {
     double start = enf_shape_height(shapes, portal, line->from);
@@ -162,18 +163,35 @@ static place find_place_quickly(const enf_shapes *shapes, int32_t portal, const 
     return (place){at, shapes->tolerance * (length + fabs(at)) / rise};
 }
 
+/// Its length in world units; infinite if it ends too far outside of the world.
+static double measure(const enf_shapes *shapes, const enf_line *line) {
+    double square = 0, reach = 0;
+    for (int i = 0; i < 3; i++) {
+        double way = line->to[i] - line->from[i];
+        reach = fmax(reach, fmax(fabs(line->from[i]), fabs(line->to[i])));
+        square += way * way;
+    }
+    return reach < 4 * shapes->extent ? sqrt(square) : HUGE_VAL;
+}
+
+static bool is_surely_ahead(place before, place after) {
+    return after.at - before.at > before.error + after.error;
+}
+
+bool enf_line_surely_in_order(const enf_shapes *shapes, const enf_line *line, int32_t before, int32_t after) {
+    double length = measure(shapes, line);
+    return is_surely_ahead(find_place_quickly(shapes, before, line, length),
+                           find_place_quickly(shapes, after, line, length));
+}
+
 int32_t enf_line_disorder(const enf_shapes *shapes, const enf_line *line, const char *decimals,
                           const int32_t *sequence, int32_t count) {
-    double way[3] = {line->to[0] - line->from[0], line->to[1] - line->from[1], line->to[2] - line->from[2]};
-    double length = sqrt(enf_dot(way, way)), reach = 0;
-    for (int i = 0; i < 3; i++) reach = fmax(reach, fmax(fabs(line->from[i]), fabs(line->to[i])));
-    bool by_doubles = !decimals && reach < 4 * shapes->extent; // else the tolerance says nothing
+    double length = decimals ? HUGE_VAL : measure(shapes, line);
     place before = {0};
     for (int32_t i = 0; i < count; i++) {
-        place here = {.error = HUGE_VAL};
-        if (by_doubles) here = find_place_quickly(shapes, sequence[i], line, length);
-        bool is_sure = here.at - before.at > here.error + before.error;
-        if (i > 0 && !is_sure && !comes_after(shapes->graph, line, decimals, sequence[i - 1], sequence[i]))
+        place here = find_place_quickly(shapes, sequence[i], line, length);
+        if (i > 0 && !is_surely_ahead(before, here) &&
+            !comes_after(shapes->graph, line, decimals, sequence[i - 1], sequence[i]))
             return i;
         before = here;
     }

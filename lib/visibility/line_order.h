@@ -19,4 +19,7 @@
 int32_t enf_line_disorder(const enf_shapes *shapes, const enf_line *line, const char *decimals,
                           const int32_t *sequence, int32_t count);
 
+/// Does the line, which passes both portals, come to one before the other? True if doubles are sure of it.
+bool enf_line_surely_in_order(const enf_shapes *shapes, const enf_line *line, int32_t before, int32_t after);
+
 #endif

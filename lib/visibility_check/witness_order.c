@@ -91,20 +91,31 @@ static bool find_place(order *order, const enf_portal_graph *graph, int32_t port
     return false;
 }
 
-static bool in_one_plane(order *order, const enf_portal_graph *graph, const place *one, const place *two) {
-    for (int c = 0; c < 3; c++) {
-        for (int k = 0; k < 3; k++) set_arm(order, k, graph->corners[one->corner[k]]);
-        for (int i = 0; i < 3; i++) {
-            mpq_sub(order->arm[1][i], order->arm[1][i], order->arm[0][i]);
-            mpq_sub(order->arm[2][i], order->arm[2][i], order->arm[0][i]);
-            mpq_set_d(order->product, graph->corners[two->corner[c]][i]);
-            mpq_sub(order->side[i], order->product, order->from[i]);
-            mpq_sub(order->side[i], order->side[i], order->arm[0][i]);
-        }
-        set_determinant(order, order->sum, order->arm[1], order->arm[2], order->side);
-        if (mpq_sgn(order->sum) != 0) return false;
+/// arm = the way from one corner to another
+static void set_way(order *order, int k, const double from[3], const double to[3]) {
+    for (int i = 0; i < 3; i++) {
+        mpq_set_d(order->arm[k][i], to[i]);
+        mpq_set_d(order->product, from[i]);
+        mpq_sub(order->arm[k][i], order->arm[k][i], order->product);
     }
-    return true;
+}
+
+bool enf_witness_in_one_plane(const enf_portal_graph *graph, const int32_t one[3], const int32_t two[3]) {
+    const double *origin = graph->corners[one[0]];
+    bool same = true;
+    order order;
+    mpq_t nowhere[3];
+    for (int i = 0; i < 3; i++) mpq_init(nowhere[i]);
+    order_init(&order, nowhere, nowhere);
+    for (int k = 0; k < 3; k++) {
+        for (int c = 1; c < 3; c++) set_way(&order, c, origin, graph->corners[one[c]]);
+        set_way(&order, 0, origin, graph->corners[two[k]]);
+        set_determinant(&order, order.sum, order.arm[0], order.arm[1], order.arm[2]);
+        same = same && mpq_sgn(order.sum) == 0;
+    }
+    order_clear(&order);
+    for (int i = 0; i < 3; i++) mpq_clear(nowhere[i]);
+    return same;
 }
 
 bool enf_witness_in_order(const enf_portal_graph *graph, mpq_t from[3], mpq_t to[3], int32_t first,
@@ -116,7 +127,7 @@ bool enf_witness_in_order(const enf_portal_graph *graph, mpq_t from[3], mpq_t to
     bool good = find_place(&order, graph, first, &one) && find_place(&order, graph, second, &two);
     if (good) {
         int ahead = mpq_cmp(two.along, one.along);
-        good = ahead > 0 || (ahead == 0 && in_one_plane(&order, graph, &one, &two));
+        good = ahead > 0 || (ahead == 0 && enf_witness_in_one_plane(graph, one.corner, two.corner));
     }
     mpq_clears(one.along, two.along, NULL);
     order_clear(&order);
@@ -133,7 +144,8 @@ typedef struct share {
     double at, error;
 } share;
 
-/// Where the line comes to the portal: as far from the plane through the first corner as corners are, at most.
+/// Where the line comes to the portal: as far from the plane through the first corner as corners are, at
+/// most.
 static share find_share(const enf_portal_graph *graph, int32_t portal, const double from[3],
                         const double to[3]) {
     int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];

@@ -14,7 +14,10 @@
 bool enf_witness_in_order(const enf_portal_graph *graph, mpq_t from[3], mpq_t to[3], int32_t first,
                           int32_t second);
 
-/// The same by doubles: true if it is certain.
+/// Do two triangles, as corners of the graph, lie in one plane?
+bool enf_witness_in_one_plane(const enf_portal_graph *graph, const int32_t one[3], const int32_t two[3]);
+
+/// The same as enf_witness_in_order by doubles: true if it is certain.
 bool enf_witness_surely_in_order(const enf_portal_graph *graph, const double from[3], const double to[3],
                                  int32_t first, int32_t second);
 
