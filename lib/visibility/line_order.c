@@ -100,46 +100,27 @@ static bool set_share(numbers *n, const triangle *triangle, mpq_t share) {
     return true;
 }
 
-/// Finds the triangle of a portal that the line goes through, and where; false if there is none.
-static bool find_place(numbers *n, const enf_portal_graph *graph, int32_t portal, triangle *triangle,
-                       mpq_t share) {
+/// share = where the line goes through one of a portal's triangles; false if it does not.
+static bool find_share(numbers *n, const enf_portal_graph *graph, int32_t portal, mpq_t share) {
     const int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
     const double(*corners)[3] = (const double(*)[3])graph->corners;
     const int wanted = portal & 1 ? -1 : 1;
     for (int32_t i = first + 1; i + 1 < end; i++) {
-        triangle->corner[0] = corners[first];
-        triangle->corner[1] = corners[i];
-        triangle->corner[2] = corners[i + 1];
+        const triangle triangle = {{corners[first], corners[i], corners[i + 1]}};
         if (side_of(n, corners[first], corners[i]) * wanted >= 0 &&
-            side_of(n, corners[i + 1], corners[first]) * wanted >= 0 && set_share(n, triangle, share))
+            side_of(n, corners[i + 1], corners[first]) * wanted >= 0 && set_share(n, &triangle, share))
             return true;
     }
     return false;
 }
 
-static bool is_in_plane(numbers *n, const triangle *plane, const triangle *other) {
-    for (int k = 0; k < 3; k++) {
-        point at;
-        for (int i = 0; i < 3; i++) {
-            mpq_init(at[i]);
-            mpq_set_d(at[i], other->corner[k][i]);
-        }
-        set_height(n, plane, at);
-        for (int i = 0; i < 3; i++) mpq_clear(at[i]);
-        if (mpq_sgn(n->sum) != 0) return false;
-    }
-    return true;
-}
-
 static bool comes_after(const enf_portal_graph *graph, const enf_line *line, const char *decimals,
                         int32_t before, int32_t after) {
     numbers n;
-    triangle one, two;
     each_number(&n, mpq_init);
     set_line(&n, line, decimals);
-    bool found = find_place(&n, graph, before, &one, n.before) && find_place(&n, graph, after, &two, n.after);
-    int order = found ? mpq_cmp(n.after, n.before) : -1;
-    bool good = order > 0 || (order == 0 && is_in_plane(&n, &one, &two));
+    bool good = find_share(&n, graph, before, n.before) && find_share(&n, graph, after, n.after) &&
+                mpq_cmp(n.before, n.after) < 0;
     each_number(&n, mpq_clear);
     return good;
 }

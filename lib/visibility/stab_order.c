@@ -40,19 +40,6 @@ static triangle get_triangle(const ordering *o, int32_t place, int32_t index) {
                       index == (turned ? 0 : triangle_count(o, place) - 1)};
 }
 
-/// Is there anything left of the side in whole numbers?
-static bool is_something(const enf_stabber *stabber, const enf_stab_side *side) {
-    mpz_t vector[ENF_PLUECKER];
-    int nonzero = 0;
-    for (int i = 0; i < ENF_PLUECKER; i++) mpz_init(vector[i]);
-    enf_stabber_whole_side(stabber, side, vector);
-    for (int i = 0; i < ENF_PLUECKER; i++) {
-        nonzero += mpz_sgn(vector[i]) != 0;
-        mpz_clear(vector[i]);
-    }
-    return nonzero > 0;
-}
-
 static void add_side(enf_stabber *stabber, const enf_stab_side *side) {
     stabber->sides[stabber->side_count++] = *side;
 }
@@ -64,13 +51,10 @@ static void add_triangle(enf_stabber *stabber, const triangle *triangle, int32_t
     if (!triangle->is_last) add_side(stabber, &(enf_stab_side){{corner[2], corner[0]}, 2, place});
 }
 
-/// The first one before the second, unless they lie in one plane.
+/// The first one before the second.
 static void add_hinge(enf_stabber *stabber, const triangle *one, const triangle *two, int32_t place) {
-    const enf_stab_side hinge = {
-        {one->corner[0], one->corner[1], one->corner[2], two->corner[0], two->corner[1], two->corner[2]},
-        6,
-        place};
-    if (is_something(stabber, &hinge)) add_side(stabber, &hinge);
+    const double *const *a = one->corner, *const *b = two->corner;
+    add_side(stabber, &(enf_stab_side){{a[0], a[1], a[2], b[0], b[1], b[2]}, 6, place});
 }
 
 static bool is_ordered(const enf_stabber *stabber, int32_t place) {

@@ -67,8 +67,7 @@ static void add_order(hidden_search *search, int32_t place, int32_t one, int32_t
     enf_piece_side order = {.count = 6, .place = place};
     add_triangle(search, search->stack[place - 1].portal, one, place, order.corner);
     add_triangle(search, search->stack[place].portal, two, place, order.corner + 3);
-    if (!enf_witness_in_one_plane(search->graph, order.corner, order.corner + 3))
-        search->sides[search->side_count++] = order;
+    search->sides[search->side_count++] = order;
 }
 
 /// All pairs of triangles of the portal at this place and the one before.

@@ -5,12 +5,6 @@
 
 #include <math.h>
 
-/// Where the line goes through one of a portal's triangles.
-typedef struct place {
-    int32_t corner[3]; ///< of the triangle
-    mpq_t along;       ///< how far along the line, times the square of the way from -> to
-} place;
-
 typedef struct order {
     mpq_t *from, way[3], arm[3][3], side[3], sum, product;
 } order;
@@ -74,62 +68,32 @@ static void set_along(order *order, mpq_t along) {
     mpq_div(along, along, order->sum);
 }
 
-static bool find_place(order *order, const enf_portal_graph *graph, int32_t portal, place *place) {
+/// along = how far along the line the portal is, times the square of the way from -> to.
+static bool find_place(order *order, const enf_portal_graph *graph, int32_t portal, mpq_t along) {
     int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
+    set_arm(order, 0, graph->corners[first]);
     for (int32_t c = first + 1; c + 1 < end; c++) {
-        place->corner[0] = first;
-        place->corner[1] = c;
-        place->corner[2] = c + 1;
-        for (int k = 0; k < 3; k++) set_arm(order, k, graph->corners[place->corner[k]]);
+        set_arm(order, 1, graph->corners[c]);
+        set_arm(order, 2, graph->corners[c + 1]);
         set_sides(order, portal & 1);
         bool inside = mpq_sgn(order->sum) > 0;
         for (int k = 0; k < 3; k++) inside = inside && mpq_sgn(order->side[k]) >= 0;
         if (!inside) continue;
-        set_along(order, place->along);
+        set_along(order, along);
         return true;
     }
     return false;
 }
 
-/// arm = the way from one corner to another
-static void set_way(order *order, int k, const double from[3], const double to[3]) {
-    for (int i = 0; i < 3; i++) {
-        mpq_set_d(order->arm[k][i], to[i]);
-        mpq_set_d(order->product, from[i]);
-        mpq_sub(order->arm[k][i], order->arm[k][i], order->product);
-    }
-}
-
-bool enf_witness_in_one_plane(const enf_portal_graph *graph, const int32_t one[3], const int32_t two[3]) {
-    const double *origin = graph->corners[one[0]];
-    bool same = true;
-    order order;
-    mpq_t nowhere[3];
-    for (int i = 0; i < 3; i++) mpq_init(nowhere[i]);
-    order_init(&order, nowhere, nowhere);
-    for (int k = 0; k < 3; k++) {
-        for (int c = 1; c < 3; c++) set_way(&order, c, origin, graph->corners[one[c]]);
-        set_way(&order, 0, origin, graph->corners[two[k]]);
-        set_determinant(&order, order.sum, order.arm[0], order.arm[1], order.arm[2]);
-        same = same && mpq_sgn(order.sum) == 0;
-    }
-    order_clear(&order);
-    for (int i = 0; i < 3; i++) mpq_clear(nowhere[i]);
-    return same;
-}
-
 bool enf_witness_in_order(const enf_portal_graph *graph, mpq_t from[3], mpq_t to[3], int32_t first,
                           int32_t second) {
     order order;
-    place one, two;
+    mpq_t one, two;
     order_init(&order, from, to);
-    mpq_inits(one.along, two.along, NULL);
-    bool good = find_place(&order, graph, first, &one) && find_place(&order, graph, second, &two);
-    if (good) {
-        int ahead = mpq_cmp(two.along, one.along);
-        good = ahead > 0 || (ahead == 0 && enf_witness_in_one_plane(graph, one.corner, two.corner));
-    }
-    mpq_clears(one.along, two.along, NULL);
+    mpq_inits(one, two, NULL);
+    bool good = find_place(&order, graph, first, one) && find_place(&order, graph, second, two) &&
+                mpq_cmp(one, two) < 0;
+    mpq_clears(one, two, NULL);
     order_clear(&order);
     return good;
 }
