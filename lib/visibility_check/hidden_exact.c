@@ -12,7 +12,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { PAIRS = 9, ROWS = PAIRS + 1, STEPS_MAX = 400 };
+enum { PAIRS = 9, ROWS = PAIRS + 1, STEPS_MAX = 400, MANTISSA = 40 };
+
+/// Weights below this, of the largest, are rounding.
+static const double weight_least = 0x1p-34;
 
 typedef mpz_t form[PAIRS]; ///< values at the pairs of corners p, q, as [3 p + q]
 
@@ -22,7 +25,9 @@ struct enf_hidden_exact {
     form *forms; ///< of each edge of the task; those with is_made
     bool *is_made;
     size_t form_count; ///< initialised
-    mpz_t *table;      ///< ROWS by width
+    long *exponent;    ///< of each side's form: it times 2^this is 1 or so
+    size_t exponent_count;
+    mpz_t *table; ///< ROWS by width
     size_t table_count;
     mpz_t point[4][3];
     form total;
@@ -64,12 +69,14 @@ void enf_hidden_exact_free(enf_hidden_exact *exact) {
     for (size_t k = 0; k < exact->table_count; k++) mpz_clear(exact->table[k]);
     free(exact->forms);
     free(exact->is_made);
+    free(exact->exponent);
     free(exact->table);
     free(exact);
 }
 
 bool enf_hidden_exact_begin(enf_hidden_exact *exact, const enf_piece_task *task) {
     size_t wanted = (size_t)enf_piece_forms(task);
+    if (!enf_array_reserve(exact->exponent, exact->exponent_count, (size_t)task->side_count)) return false;
     if (wanted > exact->form_count) {
         size_t forms = exact->form_count, flags = exact->form_count;
         if (!enf_array_reserve(exact->forms, forms, wanted) ||
@@ -158,6 +165,7 @@ void enf_hidden_exact_values(enf_hidden_exact *exact, int32_t side, double value
         part[pair] = mpz_get_d_2exp(&exponent[pair], form[pair]);
         if (part[pair] != 0 && exponent[pair] > most) most = exponent[pair];
     }
+    exact->exponent[side] = most > LONG_MIN ? -most : 0;
     for (int pair = 0; pair < PAIRS; pair++) {
         bool counts = part[pair] != 0 && most - exponent[pair] < 1000;
         values[pair] = counts ? ldexp(part[pair], (int)(exponent[pair] - most)) : 0;
@@ -176,21 +184,52 @@ static void at_corners(enf_hidden_exact *exact, const mpz_t *values, const enf_p
         }
 }
 
-bool enf_hidden_exact_proves(enf_hidden_exact *exact, const enf_piece *piece, const double *weights) {
+/// *mantissa * 2^(what is returned), in units: what a weight multiplies the whole form with.
+static long split_weight(const enf_hidden_exact *exact, int32_t k, double weight, double scale,
+                         int64_t *mantissa) {
+    int32_t edges = exact->task->edge_count;
+    int exponent;
+    double part = frexp(k < edges ? weight * scale : weight, &exponent);
+    *mantissa = (int64_t)ldexp(part, MANTISSA);
+    return exponent - MANTISSA + (k < edges ? 3 * (long)exact->unit : exact->exponent[k - edges]);
+}
+
+/// total = the sum of the forms times their weights, times a power of two.
+static void add_forms(enf_hidden_exact *exact, const double *weights, const double *scales, double least) {
+    long lowest = 0; // the exponent that total has so far
+    bool some = false;
     for (int pair = 0; pair < PAIRS; pair++) mpz_set_ui(exact->total[pair], 0);
-    double most = 0;
-    for (int32_t k = 0; k < enf_piece_forms(exact->task); k++) most = fmax(most, weights[k]);
     for (int32_t k = 0; k < enf_piece_forms(exact->task); k++) {
-        uint64_t weight = (uint64_t)ldexp(weights[k] / most, 40); // what is less is rounding
-        if (!(most > 0) || weight < 64) continue;
+        int64_t mantissa;
+        if (!(weights[k] > least)) continue; // that is rounding
+        long exponent = split_weight(exact, k, weights[k], scales[k], &mantissa);
+        long down = some && exponent < lowest ? lowest - exponent : 0;
+        if (!some || exponent < lowest) lowest = exponent;
+        some = true;
         mpz_t *values = form_of(exact, k);
-        for (int pair = 0; pair < PAIRS; pair++) mpz_addmul_ui(exact->total[pair], values[pair], weight);
+        for (int pair = 0; pair < PAIRS; pair++) {
+            mpz_mul_2exp(exact->total[pair], exact->total[pair], (mp_bitcnt_t)down);
+            mpz_mul_si(exact->product, values[pair], mantissa);
+            mpz_mul_2exp(exact->product, exact->product, (mp_bitcnt_t)(exponent - lowest));
+            mpz_add(exact->total[pair], exact->total[pair], exact->product);
+        }
     }
+}
+
+bool enf_hidden_exact_proves(enf_hidden_exact *exact, const enf_piece *piece, const double *weights,
+                             const double *scales) {
+    double most = 0;
+    for (int32_t k = 0; k < enf_piece_forms(exact->task); k++) {
+        most = fmax(most, weights[k]);
+        if (k < exact->task->edge_count && !isnormal(scales[k])) return false;
+    }
+    if (!(most > 0)) return false;
+    add_forms(exact, weights, scales, most * weight_least);
     for (int pair = 0; pair < PAIRS; pair++) {
         at_corners(exact, (const mpz_t *)exact->total, piece, pair, exact->denominator);
         if (mpz_sgn(exact->denominator) > 0) return false;
     }
-    return most > 0;
+    return true;
 }
 
 // ---------------------------------------------------------------------------------------------- tableau

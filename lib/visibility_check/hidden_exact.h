@@ -48,11 +48,13 @@ void enf_hidden_exact_free(enf_hidden_exact *exact);
 /// Everything is about this task from now on, which must stay. False without memory.
 bool enf_hidden_exact_begin(enf_hidden_exact *exact, const enf_piece_task *task);
 
-/// The values of a side's form for the nine pairs of corners, as [3 p + q]; the largest is about 1.
+/// The values of a side's form for the nine pairs of corners, as [3 p + q], brought to 1 or so.
 void enf_hidden_exact_values(enf_hidden_exact *exact, int32_t side, double values[9]);
 
-/// Do these weights of the edges and sides prove that no line of the piece passes all of them?
-bool enf_hidden_exact_proves(enf_hidden_exact *exact, const enf_piece *piece, const double *weights);
+/// Do these weights prove that no line of the piece passes all edges and sides? An edge's weight is that of
+/// its form in world units, times `scales`; a side's that of enf_hidden_exact_values.
+bool enf_hidden_exact_proves(enf_hidden_exact *exact, const enf_piece *piece, const double *weights,
+                             const double *scales);
 
 /// Decides whether there are such weights: 1 if so. If not, a line of the piece is tried: -1, it passes all
 /// edges; share[0] and [1] are, rounded, its points' barycentric coordinates in the two triangles. 0: it does

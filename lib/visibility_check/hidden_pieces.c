@@ -56,19 +56,23 @@ static bool make_products(const task *task) {
     size_t forms = (size_t)enf_piece_forms(&task->here);
     if (!enf_array_reserve(work->product, work->product_capacity, forms) ||
         !enf_array_reserve(work->column, work->column_capacity, forms) ||
+        !enf_array_reserve(work->scale, work->scale_capacity, forms) ||
         !enf_hidden_exact_begin(work->exact, &task->here))
         return false;
     for (int32_t k = 0; k < task->here.edge_count; k++) {
         const double *end[2];
         edge_ends(task, k, end);
         double scale = 1 / (task->size * task->size * distance(end[0], end[1]));
+        work->scale[k] = scale;
         for (int p = 0; p < 3; p++)
             for (int q = 0; q < 3; q++)
                 work->product[k][3 * p + q] =
                     scale * side(corner_of(task, 0, p), corner_of(task, 1, q), end[0], end[1]);
     }
-    for (int32_t k = 0; k < task->here.side_count; k++)
+    for (int32_t k = 0; k < task->here.side_count; k++) {
         enf_hidden_exact_values(work->exact, k, work->product[task->here.edge_count + k]);
+        work->scale[task->here.edge_count + k] = 1;
+    }
     return true;
 }
 
@@ -179,7 +183,7 @@ static enf_pieces_answer ask_piece(const task *task, const enf_piece *piece, int
     if (!enf_matrix_game_solve(&work->game, (const double(*)[9])work->column, enf_piece_forms(&task->here)))
         work->game.value = 0;
     else if (work->game.value <= value_least &&
-             enf_hidden_exact_proves(work->exact, piece, work->game.column_weight))
+             enf_hidden_exact_proves(work->exact, piece, work->game.column_weight, work->scale))
         return ENF_PIECES_HIDDEN;
     else if (try_line(task, piece))
         return ENF_PIECES_SEEN;
@@ -251,5 +255,6 @@ void enf_hidden_pieces_free(enf_hidden_pieces *work) {
     enf_hidden_exact_free(work->exact);
     free(work->product);
     free(work->column);
+    free(work->scale);
     memset(work, 0, sizeof *work);
 }

@@ -22,7 +22,8 @@ typedef struct enf_hidden_pieces {
     enf_hidden_exact *exact;
     double (*product)[9],
         (*column)[9]; ///< of each edge: its sides of the nine corner lines; those of a piece
-    size_t product_capacity, column_capacity;
+    double *scale;    ///< of each edge: what brings its sides to 1 or so
+    size_t product_capacity, column_capacity, scale_capacity;
     double from[3], to[3]; ///< the line of ENF_PIECES_SEEN
     bool is_rounded;       ///< it is rounded: enf_hidden_exact_line is what it should be
     uint64_t pieces;       ///< looked at so far
