@@ -332,6 +332,7 @@ static void each_pair_has_its_witness(void **state) {
         enf_portal_graph graph = read_level(levels[i]);
         enf_visibility exact = run(&graph, ENF_METHOD_EXACT, 1, true);
         assert_int_equal(exact.stabs.lines_missing, 0);
+        assert_int_equal(exact.stabs.orders_open, 0);
         const int64_t longer = check_witnesses(&graph, &exact);
         printf("%s: %" PRId64 " lines, %" PRId64 " by way of a longer one, %" PRId64 " longer\n", levels[i],
                exact.witness_count, exact.stabs.lines_fine, longer);
