@@ -40,6 +40,9 @@ static void put_stabs(enf_json *json, const enf_stab_counts *stabs) {
     enf_json_whole(json, "lines_fine", stabs->lines_fine);
     enf_json_whole(json, "lines_long", stabs->lines_long);
     enf_json_whole(json, "lines_missing", stabs->lines_missing);
+    enf_json_whole(json, "orders", stabs->orders);
+    enf_json_whole(json, "orders_hidden", stabs->orders_hidden);
+    enf_json_whole(json, "orders_open", stabs->orders_open);
     enf_json_begin_array(json, "program_sizes");
     json->one_line = true;
     for (int i = 0; i < ENF_STAB_SIZES; i++) enf_json_whole(json, NULL, stabs->sizes[i]);

@@ -318,7 +318,7 @@ static void a_damaged_header_is_refused(void **state) {
         write_file("bad.ck", bytes, cut);
         expect_refusal("bad.ck", &all.about, ENF_BAD_INPUT, "no checkpoint");
     }
-    bytes[8] = 2; // a version to come
+    bytes[8] = ENF_CHECKPOINT_FORMAT + 1; // a version to come
     uint64_t hash = enf_hash64(bytes, 56, 0);
     for (int i = 0; i < 8; i++) bytes[56 + i] = (char)(hash >> 8 * i);
     write_file("bad.ck", bytes, size);

@@ -157,6 +157,7 @@ static void the_report_has_the_fixed_keys(void **state) {
         "\"pairs_open\": ",
         "\"stabs\": {",
         "\"quadrics_hidden\": ",
+        "\"orders_hidden\": ",
         "\"pairs_budgeted\": 0",
         "\"sequence_longest\": ",
         "\"sequence_lengths\": [",

@@ -146,9 +146,9 @@ static void order_along_the_line_counts(void **state) {
     assert_true(enf_line_passes(&line, &graph, sequence[0]) && enf_line_passes(&line, &graph, sequence[1]));
     enf_shapes shapes;
     assert_true(enf_shapes_make(&shapes, &graph));
-    assert_false(enf_line_is_in_order(&shapes, &line, NULL, sequence, 2));
-    assert_true(enf_line_is_in_order(&shapes, &line, NULL, sequence, 1));
-    assert_true(enf_line_is_in_order(&shapes, &line, NULL, other, 2));
+    assert_int_equal(enf_line_disorder(&shapes, &line, NULL, sequence, 2), 1);
+    assert_int_equal(enf_line_disorder(&shapes, &line, NULL, sequence, 1), 0);
+    assert_int_equal(enf_line_disorder(&shapes, &line, NULL, other, 2), 0);
     enf_shapes_free(&shapes);
     enf_witness_checker checker;
     const enf_witness witness = {.cell = {0, 2},
@@ -332,6 +332,7 @@ static void each_pair_has_its_witness(void **state) {
         enf_portal_graph graph = read_level(levels[i]);
         enf_visibility exact = run(&graph, ENF_METHOD_EXACT, 1, true);
         assert_int_equal(exact.stabs.lines_missing, 0);
+        assert_int_equal(exact.stabs.orders_open, 0);
         const int64_t longer = check_witnesses(&graph, &exact);
         printf("%s: %" PRId64 " lines, %" PRId64 " by way of a longer one, %" PRId64 " longer\n", levels[i],
                exact.witness_count, exact.stabs.lines_fine, longer);

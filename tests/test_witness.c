@@ -339,6 +339,17 @@ static void what_only_line_space_sees_is_confirmed_hidden(void **state) {
     enf_portal_graph_free(&graph);
 }
 
+/// A few pieces do, if the weights of their edges are right.
+static void a_near_miss_is_confirmed_hidden(void **state) {
+    (void)state;
+    enf_portal_graph graph = six_doors();
+    enf_hidden_report report = claim_hidden(&graph, 0, 6);
+    assert_int_equal(report.open_count, 0);
+    assert_in_range(report.pieces, 1, 100);
+    enf_hidden_report_free(&report);
+    enf_portal_graph_free(&graph);
+}
+
 /// Chains of doors at random: what the sampler finds is never confirmed hidden, and the other way round.
 static void the_sampler_and_the_hidden_check_agree(void **state) {
     (void)state;
@@ -388,6 +399,7 @@ int main(void) {
         cmocka_unit_test(neighbours_are_never_confirmed_hidden),
         cmocka_unit_test(a_slit_that_is_closed_is_confirmed_hidden),
         cmocka_unit_test(what_only_line_space_sees_is_confirmed_hidden),
+        cmocka_unit_test(a_near_miss_is_confirmed_hidden),
         cmocka_unit_test(the_sampler_and_the_hidden_check_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -29,6 +29,9 @@ enf_portal_graph slit(double width);
 /// Rooms 0 .. 3 behind doors square to y, z and x, out of the level dm1.
 enf_portal_graph three_doors(void);
 
+/// Rooms 0 .. 6 behind six doors of the level e3m3: lines miss by a thousandth of a unit.
+enf_portal_graph six_doors(void);
+
 /// At least 0, less than 1.
 double random_unit(uint64_t *seed);
 

@@ -17,7 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { HEADER_SIZE = 64, RECORD_SIZE = 32, MARK_SIZE = 4, FORMAT_VERSION = 1 };
+enum { HEADER_SIZE = 64, RECORD_SIZE = 32, MARK_SIZE = 4 };
 
 static const char magic[] = "ENFCKPT\n", mark[] = "job\n";
 static const double sync_interval = 10; // seconds
@@ -50,7 +50,7 @@ static uint64_t hash_graph(const enf_portal_graph *graph) {
 
 static void put_header(enf_bytes *bytes, const enf_checkpoint_about *about) {
     enf_put_bytes(bytes, magic, 8);
-    enf_put_word(bytes, FORMAT_VERSION, 4);
+    enf_put_word(bytes, ENF_CHECKPOINT_FORMAT, 4);
     enf_put_word(bytes, (uint64_t)about->method, 4);
     enf_put_word(bytes, about->keeps_lines, 4);
     enf_put_word(bytes, (uint64_t)about->graph->cell_count, 4);
@@ -77,7 +77,7 @@ static enf_status check_header(const enf_checkpoint *checkpoint, const uint8_t *
                         "%s: this is no checkpoint; it is left as it is, name another file", path);
     if (word_at(found, 56, 8) != enf_hash64(found, 56, 0))
         return enf_fail(error, ENF_BAD_INPUT, "%s: the checkpoint's header is damaged; %s", path, advice);
-    if (word_at(found, 8, 4) != FORMAT_VERSION || memcmp(found + 40, header + 40, 8) != 0)
+    if (word_at(found, 8, 4) != ENF_CHECKPOINT_FORMAT || memcmp(found + 40, header + 40, 8) != 0)
         return enf_fail(error, ENF_BAD_INPUT,
                         "%s: the checkpoint is from another version of this program; go on with that, or %s",
                         path, advice);

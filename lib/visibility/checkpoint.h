@@ -5,7 +5,7 @@
 // All numbers are little-endian. The header has 64 bytes:
 //
 //      0  8 bytes   "ENFCKPT\n"
-//      8  4         version of this format, 1
+//      8  4         ENF_CHECKPOINT_FORMAT
 //     12  4         method (enf_method)
 //     16  4         1 if lines are kept for witnesses, else 0
 //     20  4         cells
@@ -34,6 +34,9 @@
 
 #include "visibility/bytes.h"
 #include "visibility/portal_graph.h"
+
+/// Goes up when results change, in what they look like or in what they mean. 2: lines are in order.
+enum { ENF_CHECKPOINT_FORMAT = 2 };
 
 typedef struct enf_checkpoint enf_checkpoint;
 

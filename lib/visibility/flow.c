@@ -3,7 +3,6 @@
 
 #include "base/array.h"
 #include "base/timer.h"
-#include "visibility/line_order.h"
 #include "visibility/separator.h"
 
 #include <stdlib.h>
@@ -30,7 +29,7 @@ struct enf_flow {
     int32_t *sequence;
     size_t mask_capacity, level_capacity, sequence_capacity;
     uint64_t *targets;  ///< the caller's
-    uint64_t *doubtful; ///< a row of cells: a line passes the edges of all portals, in the wrong order
+    uint64_t *doubtful; ///< a row of cells: whether a line in order goes there was not decided
     int32_t cell;
     size_t low, high; ///< the words that hold wanted bits, or bits of the source's row
     enf_window from;
@@ -132,10 +131,11 @@ static bool is_left(const enf_flow *flow, int32_t depth) {
 
 // ---------------------------------------------------------------------------------------------- sequences
 
-static bool is_in_order(const enf_flow *flow, const enf_stab *stab, int32_t count) {
-    if (!flow->options.exact || !(stab->has_line || stab->long_line)) return true;
-    return enf_line_is_in_order(flow->options.shapes, &stab->line, stab->has_line ? NULL : stab->long_line,
-                                flow->sequence, count);
+static enf_status ask(enf_flow *flow, int32_t count, const enf_line *hint, enf_stab *stab, enf_error *error) {
+    if (flow->options.exact)
+        return enf_stab_in_order(flow->stabber, flow->options.shapes, flow->sequence, count, hint, stab,
+                                 error);
+    return enf_stab_lp(flow->stabber, flow->sequence, count, hint, stab, error);
 }
 
 /// Decides the sequence that ends at the level; it leads into a target. *passes: something stabs it.
@@ -145,16 +145,15 @@ static enf_status decide(enf_flow *flow, int32_t depth, bool *passes, enf_error 
     for (int32_t i = 0; i <= depth; i++) flow->sequence[i] = flow->levels[i].portal;
     enf_window_middle(&flow->from, hint.from);
     if (depth > 0) enf_window_middle(&flow->levels[depth].window, hint.to);
-    enf_status status = (flow->options.exact ? enf_stab_exact : enf_stab_lp)(
-        flow->stabber, flow->sequence, depth + 1, depth > 0 ? &hint : NULL, &stab, error);
+    enf_status status = ask(flow, depth + 1, depth > 0 ? &hint : NULL, &stab, error);
     if (status) return status;
     *passes = stab.answer != ENF_STAB_HIDDEN;
     if (!*passes) return ENF_OK;
-    if (!is_in_order(flow, &stab, depth + 1)) { // no proof, but no reason to hide it either
-        enf_bit_set(flow->doubtful, enf_portal_to(flow->options.shapes->graph, flow->levels[depth].portal));
+    int32_t cell = enf_portal_to(flow->options.shapes->graph, flow->levels[depth].portal);
+    if (flow->options.exact && stab.answer == ENF_STAB_OPEN) { // another sequence may tell
+        enf_bit_set(flow->doubtful, cell);
         return ENF_OK;
     }
-    int32_t cell = enf_portal_to(flow->options.shapes->graph, flow->levels[depth].portal);
     enf_bit_clear(flow->targets, cell);
     drop_wanted(flow, cell);
     flow->options.seen(flow->options.user, flow->cell, cell, &stab, depth + 1);
@@ -226,7 +225,7 @@ static enf_status search(enf_flow *flow, int32_t source, enf_error *error) {
     return ENF_OK;
 }
 
-/// What was only seen in the wrong order counts as seen, without a line: nothing may be missed.
+/// What was not decided counts as seen, without a line: nothing may be missed.
 static void see_doubtful(enf_flow *flow) {
     const enf_stab no_line = {.answer = ENF_STAB_VISIBLE};
     for (int32_t c = -1; (c = enf_bit_next(flow->doubtful, cell_words(flow), c + 1)) >= 0;) {

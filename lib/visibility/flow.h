@@ -14,14 +14,14 @@
 #include "visibility/stab.h"
 
 /// Told of each cell that is seen: `count` portals lead to it, and the line of `stab`, if it has one, passes
-/// them all.
+/// them all, for real lines in order.
 typedef void enf_flow_seen(void *user, int32_t from, int32_t to, const enf_stab *stab, int32_t count);
 
 typedef struct enf_flow_options {
     const enf_shapes *shapes;
     const enf_bits *beams; ///< bit q of row p: portal p may see portal q; what is not there is hidden
     const enf_pluecker *pluecker;
-    bool exact;      ///< real lines; otherwise the linear relaxation
+    bool exact;      ///< real lines, in order; otherwise the linear relaxation
     double deadline; ///< on enf_timer_now's clock: what is not found by then stays open
     enf_flow_seen *seen;
     void *user;

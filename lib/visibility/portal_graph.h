@@ -8,7 +8,9 @@
 /// Openings have two directed portals: portal 2k leads through opening k from its first cell into its second,
 /// portal 2k + 1 (= 2k ^ 1, its twin) back. A line passes portal 2k if it passes all edges of the winding on
 /// the inner side, strictly, in the direction of the winding's normal (right-hand rule); the twin, against
-/// it.
+/// it. A winding is planar only up to rounding: where the line comes to the portal is where it goes through
+/// the fan of triangles from the winding's first corner. Portals are passed in order if each is come to after
+/// the one before it, strictly.
 typedef struct enf_portal_graph {
     int32_t cell_count;         ///< clusters of a .prt
     int32_t opening_count;      ///< pairs of directed portals

@@ -2,6 +2,7 @@
 #include "visibility/sight.h"
 
 #include "base/array.h"
+#include "visibility/line_order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -84,6 +85,10 @@ int32_t enf_sight_walk(const enf_sight *sight, const enf_line *line, int32_t por
     }
     if (!passes(sight, along, portal)) return -1;
     int32_t count = 0;
-    while (count < most && (portal = find_exit(sight, along, portal)) >= 0) passed[count++] = portal;
+    while (count < most) {
+        int32_t next = find_exit(sight, along, portal);
+        if (next < 0 || !enf_line_surely_in_order(sight->shapes, line, portal, next)) break;
+        passed[count++] = portal = next;
+    }
     return count;
 }

@@ -19,7 +19,8 @@ void enf_sight_free(enf_sight *sight);
 
 /// Follows the line from a directed portal on, through convex cells. Returns how many portals it passes after
 /// this one, at most `most`, and which; -1 if it does not pass this one. All are passed for sure (with a
-/// clearance of 2^-40 of the largest coordinate); where that is not so, the walk ends.
+/// clearance of 2^-40 of the largest coordinate) and in order (line_order.h); where that is not so, the walk
+/// ends.
 int32_t enf_sight_walk(const enf_sight *sight, const enf_line *line, int32_t portal, int32_t *passed,
                        int32_t most);
 

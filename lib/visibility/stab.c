@@ -26,6 +26,7 @@ void enf_stabber_free(enf_stabber *stabber) {
     for (int i = 0; i < ENF_PLUECKER; i++) mpz_clear(stabber->point[i]);
     enf_quadric_free(&stabber->quadric);
     free(stabber->whole);
+    free(stabber->sides);
     free(stabber->order);
     free(stabber->sources);
     free(stabber->vectors);

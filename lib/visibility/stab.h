@@ -2,12 +2,12 @@
 // Does a line stab a portal sequence, that is, pass all its portals? Decided exactly, in two senses: by the
 // linear relaxation (S. J. Teller and C. H. Sequin, "Visibility preprocessing for interactive walkthroughs",
 // 1991), where any x in R^6 with <x, e> > 0 for all edges will do, line or not; and by real lines, which are
-// those x that lie on the Pluecker quadric. Order along the line is not asked for: between convex cells it
-// comes by itself.
+// those x that lie on the Pluecker quadric. Between convex cells the order along the line comes by itself;
+// where cells are convex only up to rounding, it is asked for in a third sense.
 #ifndef ENF_VISIBILITY_STAB_H
 #define ENF_VISIBILITY_STAB_H
 
-#include "visibility/line.h"
+#include "visibility/line_order.h"
 #include "visibility/pluecker.h"
 
 typedef enum enf_stab_answer {
@@ -42,6 +42,9 @@ typedef struct enf_stab_counts {
     int64_t lines_fine;            ///< lines between doubles that were found from a line in more digits
     int64_t lines_long;            ///< lines in more digits than doubles have
     int64_t lines_missing;         ///< visible, but no line was found: only if undecided
+    int64_t orders;                ///< sequences of which a line was found that is not in order
+    int64_t orders_hidden;         ///< of those, hidden: no line is in order
+    int64_t orders_open;           ///< of those, not decided
     int64_t sizes[ENF_STAB_SIZES]; ///< programs of fewer than 8, 16, 32, ... edges; the last: or more
 } enf_stab_counts;
 
@@ -62,5 +65,10 @@ enf_status enf_stab_lp(enf_stabber *stabber, const int32_t *sequence, int32_t co
 /// Real lines: HIDDEN, or VISIBLE with a line.
 enf_status enf_stab_exact(enf_stabber *stabber, const int32_t *sequence, int32_t count, const enf_line *hint,
                           enf_stab *stab, enf_error *error);
+
+/// Real lines that come to the portals in order, as line_order.h says: HIDDEN, VISIBLE with a line, or OPEN.
+/// The shapes are of the same graph.
+enf_status enf_stab_in_order(enf_stabber *stabber, const enf_shapes *shapes, const int32_t *sequence,
+                             int32_t count, const enf_line *hint, enf_stab *stab, enf_error *error);
 
 #endif

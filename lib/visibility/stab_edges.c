@@ -11,7 +11,7 @@
 
 static int32_t count_edges(const enf_stabber *stabber) {
     const int32_t *first = stabber->pluecker->opening_edge;
-    int32_t count = 0;
+    int32_t count = stabber->side_count;
     for (int32_t i = 0; i < stabber->count; i++) {
         const int32_t opening = stabber->sequence[i] >> 1;
         count += first[opening + 1] - first[opening];
@@ -51,7 +51,7 @@ static void choose_frame(enf_stabber *stabber) {
         stabber->rough |= opening->rough;
     }
     if (stabber->unit == ENF_NO_UNIT) stabber->unit = 0;
-    stabber->rough |= !(size > 0x1p-200 && size < 0x1p201);
+    stabber->rough |= !(size > 0x1p-200 && size < 0x1p201) || stabber->side_count > 0;
     stabber->scale = stabber->rough ? 1 : ldexp(1, -1 - ilogb(size));
 }
 
@@ -69,6 +69,13 @@ static void add_vector(enf_stabber *stabber, int32_t source) {
     stabber->sources[stabber->edge_count++] = source;
 }
 
+/// Doubles are not asked about sides.
+static void add_side(enf_stabber *stabber, int32_t side) {
+    double *out = stabber->vectors + stabber->edge_count;
+    for (int i = 0; i < ENF_PLUECKER; i++) out[(size_t)i * (size_t)stabber->capacity] = 0;
+    stabber->sources[stabber->edge_count++] = -1 - side;
+}
+
 bool enf_stabber_take(enf_stabber *stabber, const int32_t *sequence, int32_t count) {
     const int32_t *first = stabber->pluecker->opening_edge;
     stabber->sequence = sequence;
@@ -82,6 +89,7 @@ bool enf_stabber_take(enf_stabber *stabber, const int32_t *sequence, int32_t cou
         for (int32_t k = first[opening]; k < first[opening + 1]; k++)
             add_vector(stabber, 2 * k + (sequence[i] & 1));
     }
+    for (int32_t k = 0; k < stabber->side_count; k++) add_side(stabber, k);
     return true;
 }
 
@@ -100,6 +108,10 @@ static void whole_difference(mpz_t out, double a, double b, int unit) {
 
 void enf_stabber_whole_edge(const enf_stabber *stabber, int32_t k, mpz_t *vector) {
     const int32_t source = stabber->sources[k];
+    if (source < 0) {
+        enf_stabber_whole_side(stabber, &stabber->sides[-1 - source], vector);
+        return;
+    }
     const enf_pluecker_edge *edge = &stabber->pluecker->edges[source >> 1];
     const double *from = source & 1 ? edge->to : edge->from, *to = source & 1 ? edge->from : edge->to;
     mpz_t at[3];

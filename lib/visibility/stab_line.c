@@ -84,7 +84,7 @@ bool enf_stabber_passes(const enf_stabber *stabber, const enf_line *line) {
     for (int32_t i = 0; unsure && i < stabber->count; i++) {
         if (!enf_line_passes(line, graph, stabber->sequence[i])) return false;
     }
-    return true;
+    return stabber->side_count == 0 || enf_stabber_passes_wholly(stabber, line);
 }
 
 /// The quadratic form, times 2, between two points.

@@ -23,14 +23,11 @@ char *enf_fine_text(const enf_fine *fine, const enf_stabber *stabber, int digits
     return text;
 }
 
-/// Two points, seen from the origin in units; false if the text is not six numbers.
-static bool read_points(const enf_stabber *stabber, const char *text, mpq_t number[6]) {
+/// Two points of the world -> seen from the origin, in units.
+static void set_frame(const enf_stabber *stabber, mpq_t number[6]) {
     mpq_t origin;
-    bool good = true;
     mpq_init(origin);
-    for (int i = 0; good && i < 6; i++) {
-        int digits;
-        good = enf_decimal_read(number[i], &text, &digits);
+    for (int i = 0; i < 6; i++) {
         mpq_set_d(origin, stabber->origin[i % 3]);
         mpq_sub(number[i], number[i], origin);
         if (stabber->unit > 0)
@@ -39,7 +36,6 @@ static bool read_points(const enf_stabber *stabber, const char *text, mpq_t numb
             mpq_mul_2exp(number[i], number[i], (mp_bitcnt_t)-stabber->unit);
     }
     mpq_clear(origin);
-    return good && *text == '\0';
 }
 
 /// x of the line, in whole numbers: times a common denominator's square.
@@ -63,24 +59,43 @@ static void set_x(mpq_t number[6], mpz_t x[ENF_PLUECKER]) {
     mpz_clear(common);
 }
 
-bool enf_stabber_passes_text(const enf_stabber *stabber, const char *text) {
-    mpq_t number[6];
+/// Does the line between two points of the world pass all edges?
+static bool passes(const enf_stabber *stabber, mpq_t number[6]) {
     mpz_t x[ENF_PLUECKER], side;
+    bool passes = true;
     mpz_init(side);
-    for (int i = 0; i < 6; i++) {
-        mpq_init(number[i]);
-        mpz_init(x[i]);
-    }
-    bool passes = read_points(stabber, text, number);
-    if (passes) set_x(number, x);
+    for (int i = 0; i < ENF_PLUECKER; i++) mpz_init(x[i]);
+    set_frame(stabber, number);
+    set_x(number, x);
     for (int32_t k = 0; passes && k < stabber->edge_count; k++) {
         enf_whole_dot(side, x, stabber->whole[k]);
         passes = mpz_sgn(side) > 0;
     }
-    for (int i = 0; i < 6; i++) {
-        mpq_clear(number[i]);
-        mpz_clear(x[i]);
-    }
+    for (int i = 0; i < ENF_PLUECKER; i++) mpz_clear(x[i]);
     mpz_clear(side);
     return passes;
+}
+
+bool enf_stabber_passes_text(const enf_stabber *stabber, const char *text) {
+    mpq_t number[6];
+    bool good = true;
+    for (int i = 0; i < 6; i++) mpq_init(number[i]);
+    for (int i = 0; good && i < 6; i++) {
+        int digits;
+        good = enf_decimal_read(number[i], &text, &digits);
+    }
+    good = good && *text == '\0' && passes(stabber, number);
+    for (int i = 0; i < 6; i++) mpq_clear(number[i]);
+    return good;
+}
+
+bool enf_stabber_passes_wholly(const enf_stabber *stabber, const enf_line *line) {
+    mpq_t number[6];
+    for (int i = 0; i < 6; i++) {
+        mpq_init(number[i]);
+        mpq_set_d(number[i], i < 3 ? line->from[i] : line->to[i - 3]);
+    }
+    bool good = passes(stabber, number);
+    for (int i = 0; i < 6; i++) mpq_clear(number[i]);
+    return good;
 }

@@ -8,6 +8,15 @@
 #include "visibility/stab.h"
 #include "visibility/stab_quadric.h"
 
+/// A side that is no edge of a portal. Two corners: the line has to pass the way from the first to the second
+/// like an edge. Six: two triangles whose planes it rises through; it has to come to the first one before the
+/// second, which is on which side it passes the line that the planes have in common.
+typedef struct enf_stab_side {
+    const double *corner[6];
+    int count;
+    int32_t place; ///< whose order it is for: the second portal's place in the sequence
+} enf_stab_side;
+
 struct enf_stabber {
     const enf_pluecker *pluecker;
     enf_stab_counts counts;
@@ -20,9 +29,13 @@ struct enf_stabber {
     bool rough;       ///< the doubles below say nothing
     int unit;         ///< all corners are multiples of 2^unit
 
-    int32_t edge_count, capacity;
-    int32_t *sources; ///< 2 * edge of the openings, + 1 if turned round
-    double *vectors;  ///< in columns, capacity apart, with room for one more than edge_count
+    enf_stab_side *sides; ///< to be passed as well as the edges; with them, nothing is left to doubles
+    int32_t side_count;
+    size_t side_capacity;
+
+    int32_t edge_count, capacity; ///< edges, then sides
+    int32_t *sources;             ///< 2 * edge of the openings, + 1 if turned round; of side k, -1 - k
+    double *vectors;              ///< in columns, capacity apart, with room for one more than edge_count
     double *products;
     enf_min_norm hull;
 
@@ -46,10 +59,15 @@ struct enf_stabber {
 // ---- stab_edges.c
 /// Collects the edges of the sequence; false without memory.
 bool enf_stabber_take(enf_stabber *stabber, const int32_t *sequence, int32_t count);
-/// Edge vector k in whole numbers, into six initialised numbers.
+/// Edge vector k in whole numbers, into six initialised numbers. A side's may be any multiple > 0 of it.
 void enf_stabber_whole_edge(const enf_stabber *stabber, int32_t k, mpz_t *vector);
 /// All of them, into stabber->whole; false without memory.
 bool enf_stabber_whole_edges(enf_stabber *stabber);
+
+// ---- stab_sides.c
+/// The vector of a side in whole numbers, into six initialised numbers: 0 if triangles lie in one plane, or
+/// in none.
+void enf_stabber_whole_side(const enf_stabber *stabber, const enf_stab_side *side, mpz_t *vector);
 
 /// stabber->order: the members of the hull, then the tightest edges at hull.x first. False without memory.
 bool enf_stabber_order(enf_stabber *stabber);
@@ -82,13 +100,17 @@ void enf_stabber_coordinates(const enf_stabber *stabber, const enf_line *line, d
 enf_line enf_stabber_guess(const enf_stabber *stabber);
 /// Searches from the strict solution hull.x for a line that passes all portals.
 bool enf_stabber_search(enf_stabber *stabber, enf_line *line);
-/// Does it pass all portals? Exact.
+/// Does it pass all portals, and all sides? Exact.
 bool enf_stabber_passes(const enf_stabber *stabber, const enf_line *line);
 
 // ---- stab_cone.c
 /// Exactly, from the strict solution: does the open cone meet the quadric? Leaves in hull.x something next to
 /// where it does; has_meeting, unless that was not decided.
 enf_status enf_stabber_quadric(enf_stabber *stabber, bool *meets, enf_error *error);
+
+// ---- stab_long.c
+/// Does it pass all edges and sides? Exact; the whole vectors must be there.
+bool enf_stabber_passes_wholly(const enf_stabber *stabber, const enf_line *line);
 
 // ---- stab_refine.c
 /// From the meeting of cone and quadric to the line of *stab: between doubles, or else a long one.

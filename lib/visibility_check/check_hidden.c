@@ -184,6 +184,7 @@ static void free_search(hidden_search *search) {
     free(search->masks);
     free(search->columns);
     free(search->column_edge);
+    free(search->sides);
 }
 
 static void search_all(hidden_search *search, double start) {

@@ -20,8 +20,6 @@ enum { VECTORS = 3 }; // from the line's first point to: the edge's ends, the li
 static const double side_error = 7.78e-16;
 /// Below this, products may have lost digits by underflow.
 static const double side_least = 1e-250;
-/// Of the way between a line's points: portals this far apart along a line are in order for sure.
-static const double order_least = 1e-6;
 
 typedef struct witness_numbers {
     mpz_t origin[3];
@@ -54,10 +52,10 @@ bool enf_witness_checker_make(enf_witness_checker *checker, const enf_portal_gra
     if (!numbers) return false;
     each_number(numbers, mpz_init);
     checker->numbers = numbers;
-    checker->entered = enf_array_zeroed((size_t)graph->cell_count, sizeof *checker->entered);
-    checker->queue = enf_array_new((size_t)graph->cell_count, sizeof *checker->queue);
-    checker->entered_by = enf_array_new((size_t)graph->cell_count, sizeof *checker->entered_by);
-    return checker->entered && checker->queue && checker->entered_by;
+    size_t portals = 2 * (size_t)graph->opening_count;
+    checker->passed = enf_array_zeroed(portals, sizeof *checker->passed);
+    checker->queue = enf_array_new(portals, sizeof *checker->queue);
+    return checker->passed && checker->queue;
 }
 
 void enf_witness_checker_free(enf_witness_checker *checker) {
@@ -65,9 +63,8 @@ void enf_witness_checker_free(enf_witness_checker *checker) {
     if (!numbers) return;
     each_number(numbers, mpz_clear);
     free(numbers);
-    free(checker->entered);
+    free(checker->passed);
     free(checker->queue);
-    free(checker->entered_by);
     *checker = (enf_witness_checker){.graph = NULL};
 }
 
@@ -161,28 +158,10 @@ static int side(enf_witness_checker *checker, const witness_line *line, const do
 
 // ---------------------------------------------------------------------------------------------- order
 
-/// The share of the way from -> to at which the line comes to the portal, about.
-static double find_share(const enf_portal_graph *graph, int32_t portal, const witness_line *line) {
-    int32_t first = graph->opening_corner[portal >> 1], end = graph->opening_corner[(portal >> 1) + 1];
-    const double *origin = graph->corners[first];
-    double normal[3] = {0}, height = 0, fall = 0;
-    for (int32_t c = first + 1; c + 1 < end; c++)
-        for (int i = 0; i < 3; i++) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            const double *a = graph->corners[c], *b = graph->corners[c + 1];
-            normal[i] += (a[j] - origin[j]) * (b[k] - origin[k]) - (a[k] - origin[k]) * (b[j] - origin[j]);
-        }
-    for (int i = 0; i < 3; i++) {
-        height += normal[i] * (line->from[i] - origin[i]);
-        fall += normal[i] * (line->from[i] - line->to[i]);
-    }
-    return height / fall;
-}
-
 /// Does the line come to the one portal before the other? By doubles if that is clear.
 static bool in_order(enf_witness_checker *checker, int32_t first, int32_t second, const witness_line *line) {
-    double before = find_share(checker->graph, first, line), after = find_share(checker->graph, second, line);
-    if (after - before > order_least * (1 + fabs(before) + fabs(after))) return true;
+    if (!line->is_long && enf_witness_surely_in_order(checker->graph, line->from, line->to, first, second))
+        return true;
     witness_numbers *numbers = checker->numbers;
     mpq_t end[2][3];
     for (int e = 0; e < 2; e++)
@@ -213,20 +192,20 @@ static bool passes(enf_witness_checker *checker, int32_t portal, const witness_l
     return true;
 }
 
-/// Queues the cells behind the portals out of a cell that the line passes; returns the queue's new length.
-static int32_t go_on(enf_witness_checker *checker, int32_t cell, const witness_line *line, int32_t count,
-                     enf_witness_outcome *outcome) {
+/// Queues the portals out of a cell, entered by a portal or, for -1, the first one, that the line comes to
+/// next; returns the queue's new length. Each portal is queued once.
+static int32_t go_on(enf_witness_checker *checker, int32_t cell, int32_t by, const witness_line *line,
+                     int32_t count, enf_witness_outcome *outcome) {
     const enf_portal_graph *graph = checker->graph;
-    int32_t before = outcome->steps, by = checker->entered_by[cell];
+    int32_t before = outcome->steps;
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
-        int32_t portal = graph->cell_portals[k], next = enf_portal_to(graph, portal);
+        int32_t portal = graph->cell_portals[k];
         if (!passes(checker, portal, line)) continue;
         if (by >= 0 && !in_order(checker, by, portal, line)) continue;
         outcome->steps++;
-        if (checker->entered[next] == checker->walks) continue;
-        checker->entered[next] = checker->walks;
-        checker->entered_by[next] = portal;
-        checker->queue[count++] = next;
+        if (checker->passed[portal] == checker->walks) continue;
+        checker->passed[portal] = checker->walks;
+        checker->queue[count++] = portal;
     }
     outcome->forked |= outcome->steps > before + 1;
     return count;
@@ -235,17 +214,16 @@ static int32_t go_on(enf_witness_checker *checker, int32_t cell, const witness_l
 static enf_witness_outcome walk(enf_witness_checker *checker, const int32_t cell[2],
                                 const witness_line *line) {
     enf_witness_outcome outcome = {.fault = ENF_WITNESS_STUCK, .cell = cell[0]};
-    int32_t count = 1;
+    if (cell[0] == cell[1]) outcome.fault = ENF_WITNESS_HOLDS;
+    if (!outcome.fault) return outcome;
     checker->walks++;
-    checker->entered[cell[0]] = checker->walks;
-    checker->entered_by[cell[0]] = -1;
-    checker->queue[0] = cell[0];
+    int32_t count = go_on(checker, cell[0], -1, line, 0, &outcome);
     for (int32_t at = 0; at < count && outcome.fault; at++) {
-        outcome.cell = checker->queue[at];
+        outcome.cell = enf_portal_to(checker->graph, checker->queue[at]);
         if (outcome.cell == cell[1])
             outcome.fault = ENF_WITNESS_HOLDS;
         else
-            count = go_on(checker, outcome.cell, line, count, &outcome);
+            count = go_on(checker, outcome.cell, checker->queue[at], line, count, &outcome);
     }
     return outcome;
 }

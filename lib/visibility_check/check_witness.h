@@ -31,10 +31,9 @@ typedef struct enf_witness_outcome {
 
 typedef struct enf_witness_checker {
     const enf_portal_graph *graph;
-    void *numbers;       ///< scratch of the exact arithmetic
-    int32_t *entered;    ///< of each cell: the last walk that entered it
-    int32_t *entered_by; ///< by which portal then; -1: the walk began there
-    int32_t *queue;      ///< the cells of a walk
+    void *numbers;   ///< scratch of the exact arithmetic
+    int32_t *passed; ///< of each portal: the last walk that passed it
+    int32_t *queue;  ///< the portals of a walk
     int32_t walks;
     uint64_t sides_near, sides_exact; ///< sides decided by doubles, and by whole numbers
 } enf_witness_checker;

@@ -8,10 +8,14 @@
 #include "base/array.h"
 #include "visibility_check/whole_number.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
-enum { PAIRS = 9, ROWS = PAIRS + 1, STEPS_MAX = 400 };
+enum { PAIRS = 9, ROWS = PAIRS + 1, STEPS_MAX = 400, MANTISSA = 40 };
+
+/// Weights below this, of the largest, are rounding.
+static const double weight_least = 0x1p-34;
 
 typedef mpz_t form[PAIRS]; ///< values at the pairs of corners p, q, as [3 p + q]
 
@@ -21,11 +25,14 @@ struct enf_hidden_exact {
     form *forms; ///< of each edge of the task; those with is_made
     bool *is_made;
     size_t form_count; ///< initialised
-    mpz_t *table;      ///< ROWS by width
+    long *exponent;    ///< of each side's form: it times 2^this is 1 or so
+    size_t exponent_count;
+    mpz_t *table; ///< ROWS by width
     size_t table_count;
     mpz_t point[4][3];
     form total;
-    mpz_t product, denominator, share[2][3];
+    mpz_t product, denominator, share[2][3], height[2][2];
+    mpq_t end[2][3]; ///< of the last line that passed
 };
 
 enf_hidden_exact *enf_hidden_exact_make(const enf_portal_graph *graph) {
@@ -36,8 +43,12 @@ enf_hidden_exact *enf_hidden_exact_make(const enf_portal_graph *graph) {
     for (int k = 0; k < PAIRS; k++) mpz_init(exact->total[k]);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 4; k++) mpz_init(exact->point[k][i]);
-        for (int s = 0; s < 2; s++) mpz_init(exact->share[s][i]);
+        for (int s = 0; s < 2; s++) {
+            mpz_init(exact->share[s][i]);
+            mpq_init(exact->end[s][i]);
+        }
     }
+    for (int k = 0; k < 4; k++) mpz_init(exact->height[k / 2][k % 2]);
     return exact;
 }
 
@@ -47,19 +58,25 @@ void enf_hidden_exact_free(enf_hidden_exact *exact) {
     for (int k = 0; k < PAIRS; k++) mpz_clear(exact->total[k]);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 4; k++) mpz_clear(exact->point[k][i]);
-        for (int s = 0; s < 2; s++) mpz_clear(exact->share[s][i]);
+        for (int s = 0; s < 2; s++) {
+            mpz_clear(exact->share[s][i]);
+            mpq_clear(exact->end[s][i]);
+        }
     }
+    for (int k = 0; k < 4; k++) mpz_clear(exact->height[k / 2][k % 2]);
     for (size_t k = 0; k < exact->form_count; k++)
         for (int pair = 0; pair < PAIRS; pair++) mpz_clear(exact->forms[k][pair]);
     for (size_t k = 0; k < exact->table_count; k++) mpz_clear(exact->table[k]);
     free(exact->forms);
     free(exact->is_made);
+    free(exact->exponent);
     free(exact->table);
     free(exact);
 }
 
 bool enf_hidden_exact_begin(enf_hidden_exact *exact, const enf_piece_task *task) {
-    size_t wanted = (size_t)task->edge_count;
+    size_t wanted = (size_t)enf_piece_forms(task);
+    if (!enf_array_reserve(exact->exponent, exact->exponent_count, (size_t)task->side_count)) return false;
     if (wanted > exact->form_count) {
         size_t forms = exact->form_count, flags = exact->form_count;
         if (!enf_array_reserve(exact->forms, forms, wanted) ||
@@ -95,22 +112,64 @@ static void set_point(enf_hidden_exact *exact, int k, int32_t corner) {
         enf_set_whole(exact->point[k][i], exact->task->graph->corners[corner][i], exact->unit);
 }
 
-/// The form of an edge, made when it is first needed.
+static void make_edge_form(enf_hidden_exact *exact, int32_t from, int32_t to, mpz_t *values) {
+    for (int pair = 0; pair < PAIRS; pair++) {
+        set_point(exact, 0, exact->task->triangle[0][pair / 3]);
+        set_point(exact, 1, from);
+        set_point(exact, 2, to);
+        set_point(exact, 3, exact->task->triangle[1][pair % 3]);
+        make_side(exact, values[pair]);
+    }
+}
+
+/// With f and g the heights above the planes of two triangles, the line from p to q comes to the first one at
+/// f(p) / (f(p) - f(q)) of the way, to the other at g(p) / (g(p) - g(q)); where both rise, that is later if
+/// f(p) g(q) - g(p) f(q) is above 0.
+static void make_order_form(enf_hidden_exact *exact, const int32_t corner[6], mpz_t *values) {
+    for (int pair = 0; pair < PAIRS; pair++) {
+        for (int end = 0; end < 2; end++)
+            for (int plane = 0; plane < 2; plane++) {
+                for (int k = 0; k < 3; k++) set_point(exact, k, corner[3 * plane + k]);
+                set_point(exact, 3, exact->task->triangle[end][end ? pair % 3 : pair / 3]);
+                make_side(exact, exact->height[end][plane]);
+            }
+        mpz_mul(values[pair], exact->height[0][0], exact->height[1][1]);
+        mpz_submul(values[pair], exact->height[0][1], exact->height[1][0]);
+    }
+}
+
+/// The form of an edge or a side, made when it is first needed.
 static mpz_t *form_of(enf_hidden_exact *exact, int32_t k) {
     const enf_piece_task *task = exact->task;
     if (exact->is_made[k]) return exact->forms[k];
-    int32_t corner[2] = {task->edges[k] >> 1, task->corner_next[task->edges[k] >> 1]};
-    int turned = task->edges[k] & 1;
-    for (int p = 0; p < 3; p++)
-        for (int q = 0; q < 3; q++) {
-            set_point(exact, 0, task->triangle[0][p]);
-            set_point(exact, 1, corner[turned]);
-            set_point(exact, 2, corner[!turned]);
-            set_point(exact, 3, task->triangle[1][q]);
-            make_side(exact, exact->forms[k][3 * p + q]);
-        }
     exact->is_made[k] = true;
+    if (k < task->edge_count) {
+        int32_t corner[2] = {task->edges[k] >> 1, task->corner_next[task->edges[k] >> 1]};
+        int turned = task->edges[k] & 1;
+        make_edge_form(exact, corner[turned], corner[!turned], exact->forms[k]);
+        return exact->forms[k];
+    }
+    const enf_piece_side *side = &task->sides[k - task->edge_count];
+    if (side->count == 2)
+        make_edge_form(exact, side->corner[0], side->corner[1], exact->forms[k]);
+    else
+        make_order_form(exact, side->corner, exact->forms[k]);
     return exact->forms[k];
+}
+
+void enf_hidden_exact_values(enf_hidden_exact *exact, int32_t side, double values[9]) {
+    mpz_t *form = form_of(exact, exact->task->edge_count + side);
+    double part[PAIRS];
+    long exponent[PAIRS], most = LONG_MIN;
+    for (int pair = 0; pair < PAIRS; pair++) {
+        part[pair] = mpz_get_d_2exp(&exponent[pair], form[pair]);
+        if (part[pair] != 0 && exponent[pair] > most) most = exponent[pair];
+    }
+    exact->exponent[side] = most > LONG_MIN ? -most : 0;
+    for (int pair = 0; pair < PAIRS; pair++) {
+        bool counts = part[pair] != 0 && most - exponent[pair] < 1000;
+        values[pair] = counts ? ldexp(part[pair], (int)(exponent[pair] - most)) : 0;
+    }
 }
 
 /// out = the form at corners i and j of the piece.
@@ -125,26 +184,57 @@ static void at_corners(enf_hidden_exact *exact, const mpz_t *values, const enf_p
         }
 }
 
-bool enf_hidden_exact_proves(enf_hidden_exact *exact, const enf_piece *piece, const double *weights) {
+/// *mantissa * 2^(what is returned), in units: what a weight multiplies the whole form with.
+static long split_weight(const enf_hidden_exact *exact, int32_t k, double weight, double scale,
+                         int64_t *mantissa) {
+    int32_t edges = exact->task->edge_count;
+    int exponent;
+    double part = frexp(k < edges ? weight * scale : weight, &exponent);
+    *mantissa = (int64_t)ldexp(part, MANTISSA);
+    return exponent - MANTISSA + (k < edges ? 3 * (long)exact->unit : exact->exponent[k - edges]);
+}
+
+/// total = the sum of the forms times their weights, times a power of two.
+static void add_forms(enf_hidden_exact *exact, const double *weights, const double *scales, double least) {
+    long lowest = 0; // the exponent that total has so far
+    bool some = false;
     for (int pair = 0; pair < PAIRS; pair++) mpz_set_ui(exact->total[pair], 0);
-    double most = 0;
-    for (int32_t k = 0; k < exact->task->edge_count; k++) most = fmax(most, weights[k]);
-    for (int32_t k = 0; k < exact->task->edge_count; k++) {
-        uint64_t weight = (uint64_t)ldexp(weights[k] / most, 40); // what is less is rounding
-        if (!(most > 0) || weight < 64) continue;
+    for (int32_t k = 0; k < enf_piece_forms(exact->task); k++) {
+        int64_t mantissa;
+        if (!(weights[k] > least)) continue; // that is rounding
+        long exponent = split_weight(exact, k, weights[k], scales[k], &mantissa);
+        long down = some && exponent < lowest ? lowest - exponent : 0;
+        if (!some || exponent < lowest) lowest = exponent;
+        some = true;
         mpz_t *values = form_of(exact, k);
-        for (int pair = 0; pair < PAIRS; pair++) mpz_addmul_ui(exact->total[pair], values[pair], weight);
+        for (int pair = 0; pair < PAIRS; pair++) {
+            mpz_mul_2exp(exact->total[pair], exact->total[pair], (mp_bitcnt_t)down);
+            mpz_mul_si(exact->product, values[pair], mantissa);
+            mpz_mul_2exp(exact->product, exact->product, (mp_bitcnt_t)(exponent - lowest));
+            mpz_add(exact->total[pair], exact->total[pair], exact->product);
+        }
     }
+}
+
+bool enf_hidden_exact_proves(enf_hidden_exact *exact, const enf_piece *piece, const double *weights,
+                             const double *scales) {
+    double most = 0;
+    for (int32_t k = 0; k < enf_piece_forms(exact->task); k++) {
+        most = fmax(most, weights[k]);
+        if (k < exact->task->edge_count && !isnormal(scales[k])) return false;
+    }
+    if (!(most > 0)) return false;
+    add_forms(exact, weights, scales, most * weight_least);
     for (int pair = 0; pair < PAIRS; pair++) {
         at_corners(exact, (const mpz_t *)exact->total, piece, pair, exact->denominator);
         if (mpz_sgn(exact->denominator) > 0) return false;
     }
-    return most > 0;
+    return true;
 }
 
 // ---------------------------------------------------------------------------------------------- tableau
 
-/// Columns: the edges, then a slack for each row. Rows: the pairs of corners, then gains.
+/// Columns: the edges and sides, then a slack for each row. Rows: the pairs of corners, then gains.
 typedef struct table {
     mpz_t *entry;
     int32_t width;
@@ -152,7 +242,7 @@ typedef struct table {
 } table;
 
 static bool make_table(enf_hidden_exact *exact, const enf_piece *piece, table *table) {
-    int32_t edges = exact->task->edge_count;
+    int32_t edges = enf_piece_forms(exact->task);
     table->width = edges + PAIRS;
     size_t wanted = (size_t)table->width * ROWS, capacity = exact->table_count;
     if (!enf_array_reserve(exact->table, capacity, wanted)) return false;
@@ -215,11 +305,11 @@ static bool dual_line_passes(enf_hidden_exact *exact, const enf_piece *piece, co
         for (int p = 0; p < 3; p++) mpz_set_ui(exact->share[s][p], 0);
     for (int pair = 0; pair < PAIRS; pair++)
         for (int p = 0; p < 3; p++) {
-            mpz_srcptr weight = gain[exact->task->edge_count + pair]; // <= 0
+            mpz_srcptr weight = gain[enf_piece_forms(exact->task) + pair]; // <= 0
             mpz_submul_ui(exact->share[0][p], weight, (unsigned long)piece->corner[0][pair / 3][p]);
             mpz_submul_ui(exact->share[1][p], weight, (unsigned long)piece->corner[1][pair % 3][p]);
         }
-    for (int32_t k = 0; k < exact->task->edge_count; k++) {
+    for (int32_t k = 0; k < enf_piece_forms(exact->task); k++) {
         mpz_t *values = form_of(exact, k);
         mpz_set_ui(exact->total[0], 0);
         for (int pair = 0; pair < PAIRS; pair++) {
@@ -247,6 +337,38 @@ static void round_shares(enf_hidden_exact *exact, double share[2][3]) {
     }
 }
 
+/// The points of the two shares.
+static void set_ends(enf_hidden_exact *exact) {
+    mpq_t part, all;
+    mpq_inits(part, all, NULL);
+    for (int s = 0; s < 2; s++) {
+        mpz_add(exact->product, exact->share[s][0], exact->share[s][1]);
+        mpz_add(exact->product, exact->product, exact->share[s][2]);
+        mpq_set_z(all, exact->product);
+        for (int i = 0; i < 3; i++) {
+            mpq_set_ui(exact->end[s][i], 0, 1);
+            for (int p = 0; p < 3; p++) {
+                mpq_t coordinate;
+                mpq_init(coordinate);
+                mpq_set_d(coordinate, exact->task->graph->corners[exact->task->triangle[s][p]][i]);
+                mpq_set_z(part, exact->share[s][p]);
+                mpq_mul(part, part, coordinate);
+                mpq_add(exact->end[s][i], exact->end[s][i], part);
+                mpq_clear(coordinate);
+            }
+            mpq_div(exact->end[s][i], exact->end[s][i], all);
+        }
+    }
+    mpq_clears(part, all, NULL);
+}
+
+void enf_hidden_exact_line(const enf_hidden_exact *exact, mpq_t from[3], mpq_t to[3]) {
+    for (int i = 0; i < 3; i++) {
+        mpq_set(from[i], exact->end[0][i]);
+        mpq_set(to[i], exact->end[1][i]);
+    }
+}
+
 int enf_hidden_exact_decide(enf_hidden_exact *exact, const enf_piece *piece, double share[2][3]) {
     table table;
     if (!make_table(exact, piece, &table)) return 0;
@@ -254,5 +376,6 @@ int enf_hidden_exact_decide(enf_hidden_exact *exact, const enf_piece *piece, dou
     if (answer != 0) return answer > 0;
     if (!dual_line_passes(exact, piece, &table)) return 0;
     round_shares(exact, share);
+    set_ends(exact);
     return -1;
 }

@@ -53,17 +53,25 @@ static double side(const double from[3], const double to[3], const double a[3], 
 
 static bool make_products(const task *task) {
     enf_hidden_pieces *work = task->work;
-    if (!enf_array_reserve(work->product, work->product_capacity, (size_t)task->here.edge_count) ||
-        !enf_array_reserve(work->column, work->column_capacity, (size_t)task->here.edge_count))
+    size_t forms = (size_t)enf_piece_forms(&task->here);
+    if (!enf_array_reserve(work->product, work->product_capacity, forms) ||
+        !enf_array_reserve(work->column, work->column_capacity, forms) ||
+        !enf_array_reserve(work->scale, work->scale_capacity, forms) ||
+        !enf_hidden_exact_begin(work->exact, &task->here))
         return false;
     for (int32_t k = 0; k < task->here.edge_count; k++) {
         const double *end[2];
         edge_ends(task, k, end);
         double scale = 1 / (task->size * task->size * distance(end[0], end[1]));
+        work->scale[k] = scale;
         for (int p = 0; p < 3; p++)
             for (int q = 0; q < 3; q++)
                 work->product[k][3 * p + q] =
                     scale * side(corner_of(task, 0, p), corner_of(task, 1, q), end[0], end[1]);
+    }
+    for (int32_t k = 0; k < task->here.side_count; k++) {
+        enf_hidden_exact_values(work->exact, k, work->product[task->here.edge_count + k]);
+        work->scale[task->here.edge_count + k] = 1;
     }
     return true;
 }
@@ -74,7 +82,7 @@ static void make_columns(const task *task, const enf_piece *piece) {
     for (int s = 0; s < 2; s++)
         for (int i = 0; i < 3; i++)
             for (int p = 0; p < 3; p++) u[s][i][p] = (double)piece->corner[s][i][p] / ENF_PIECE_ONE;
-    for (int32_t k = 0; k < task->here.edge_count; k++) {
+    for (int32_t k = 0; k < enf_piece_forms(&task->here); k++) {
         const double *d = task->work->product[k];
         double *column = task->work->column[k], half[3][3];
         for (int i = 0; i < 3; i++)
@@ -91,6 +99,7 @@ static void make_columns(const task *task, const enf_piece *piece) {
 
 static void set_line(const task *task, const double share[2][3]) {
     enf_hidden_pieces *work = task->work;
+    work->is_rounded = false;
     for (int i = 0; i < 3; i++) {
         work->from[i] = work->to[i] = 0;
         for (int p = 0; p < 3; p++) {
@@ -100,7 +109,17 @@ static void set_line(const task *task, const double share[2][3]) {
     }
 }
 
-/// The line that the row player's weights name: does it pass all edges, clearly?
+static bool passes_sides(const task *task, const double share[2][3]) {
+    for (int32_t k = task->here.edge_count; k < enf_piece_forms(&task->here); k++) {
+        double sum = 0;
+        for (int p = 0; p < 3; p++)
+            for (int q = 0; q < 3; q++) sum += task->work->product[k][3 * p + q] * share[0][p] * share[1][q];
+        if (!(sum > side_least)) return false;
+    }
+    return true;
+}
+
+/// The line that the row player's weights name: does it pass all edges and sides, clearly?
 static bool try_line(const task *task, const enf_piece *piece) {
     enf_hidden_pieces *work = task->work;
     double share[2][3] = {{0}};
@@ -117,7 +136,7 @@ static bool try_line(const task *task, const enf_piece *piece) {
         double least = side_least * task->size * task->size * distance(end[0], end[1]);
         if (!(side(work->from, work->to, end[0], end[1]) > least)) return false;
     }
-    return true;
+    return passes_sides(task, (const double(*)[3])share);
 }
 
 static void point_of(const task *task, int s, const int32_t share[3], double point[3]) {
@@ -161,16 +180,17 @@ static enf_pieces_answer ask_piece(const task *task, const enf_piece *piece, int
     double share[2][3];
     work->pieces++;
     make_columns(task, piece);
-    if (!enf_matrix_game_solve(&work->game, (const double(*)[9])work->column, task->here.edge_count))
+    if (!enf_matrix_game_solve(&work->game, (const double(*)[9])work->column, enf_piece_forms(&task->here)))
         work->game.value = 0;
     else if (work->game.value <= value_least &&
-             enf_hidden_exact_proves(work->exact, piece, work->game.column_weight))
+             enf_hidden_exact_proves(work->exact, piece, work->game.column_weight, work->scale))
         return ENF_PIECES_HIDDEN;
     else if (try_line(task, piece))
         return ENF_PIECES_SEEN;
     if (fabs(work->game.value) > value_least || (*decisions)++ >= DECISIONS) return ENF_PIECES_OPEN;
     int decided = enf_hidden_exact_decide(work->exact, piece, share);
     if (decided < 0) set_line(task, (const double(*)[3])share);
+    work->is_rounded = decided < 0;
     return decided > 0 ? ENF_PIECES_HIDDEN : decided < 0 ? ENF_PIECES_SEEN : ENF_PIECES_OPEN;
 }
 
@@ -181,7 +201,7 @@ static enf_pieces_answer ask_triangles(const task *task) {
                    {{ENF_PIECE_ONE, 0, 0}, {0, ENF_PIECE_ONE, 0}, {0, 0, ENF_PIECE_ONE}}}};
     enf_piece stack[STACK] = {whole};
     int depth = 1, decisions = 0;
-    if (!make_products(task) || !enf_hidden_exact_begin(work->exact, &task->here)) return ENF_PIECES_OPEN;
+    if (!make_products(task)) return ENF_PIECES_OPEN;
     for (int32_t count = 0; depth > 0; count++) {
         if (count >= work->limit) return ENF_PIECES_OPEN;
         const enf_piece piece = stack[--depth];
@@ -209,7 +229,9 @@ enf_pieces_answer enf_hidden_pieces_ask(enf_hidden_pieces *work, int32_t first, 
                                   .triangle = {{offset[first], a, a + 1}, {offset[last], b, b + 1}},
                                   .edges = edges,
                                   .corner_next = corner_next,
-                                  .edge_count = edge_count}};
+                                  .edge_count = edge_count,
+                                  .sides = work->sides,
+                                  .side_count = work->side_count}};
             for (int p = 0; p < 3; p++)
                 for (int q = 0; q < 3; q++)
                     task.size = fmax(task.size, distance(corner_of(&task, 0, p), corner_of(&task, 1, q)));
@@ -220,10 +242,19 @@ enf_pieces_answer enf_hidden_pieces_ask(enf_hidden_pieces *work, int32_t first, 
     return answer;
 }
 
+void enf_hidden_pieces_line(const enf_hidden_pieces *work, mpq_t from[3], mpq_t to[3]) {
+    for (int i = 0; i < 3; i++) {
+        mpq_set_d(from[i], work->from[i]);
+        mpq_set_d(to[i], work->to[i]);
+    }
+    if (work->is_rounded) enf_hidden_exact_line(work->exact, from, to);
+}
+
 void enf_hidden_pieces_free(enf_hidden_pieces *work) {
     enf_matrix_game_free(&work->game);
     enf_hidden_exact_free(work->exact);
     free(work->product);
     free(work->column);
+    free(work->scale);
     memset(work, 0, sizeof *work);
 }

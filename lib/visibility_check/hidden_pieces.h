@@ -15,13 +15,17 @@ typedef enum enf_pieces_answer {
 
 typedef struct enf_hidden_pieces {
     const enf_portal_graph *graph;
-    int32_t limit; ///< pieces to look at for one pair of triangles
+    int32_t limit;               ///< pieces to look at for one pair of triangles
+    const enf_piece_side *sides; ///< to be passed as well
+    int32_t side_count;
     enf_matrix_game game;
     enf_hidden_exact *exact;
     double (*product)[9],
         (*column)[9]; ///< of each edge: its sides of the nine corner lines; those of a piece
-    size_t product_capacity, column_capacity;
+    double *scale;    ///< of each edge: what brings its sides to 1 or so
+    size_t product_capacity, column_capacity, scale_capacity;
     double from[3], to[3]; ///< the line of ENF_PIECES_SEEN
+    bool is_rounded;       ///< it is rounded: enf_hidden_exact_line is what it should be
     uint64_t pieces;       ///< looked at so far
 } enf_hidden_pieces;
 
@@ -29,6 +33,9 @@ typedef struct enf_hidden_pieces {
 /// passes `first` and then `last` (openings) has all of them on the inner side?
 enf_pieces_answer enf_hidden_pieces_ask(enf_hidden_pieces *work, int32_t first, int32_t last,
                                         const int32_t *edges, const int32_t *corner_next, int32_t edge_count);
+
+/// The line of ENF_PIECES_SEEN as it is.
+void enf_hidden_pieces_line(const enf_hidden_pieces *work, mpq_t from[3], mpq_t to[3]);
 
 void enf_hidden_pieces_free(enf_hidden_pieces *work);
 

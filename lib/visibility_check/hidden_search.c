@@ -165,19 +165,6 @@ bool hidden_search_program(hidden_search *search, hidden_frame *frame, int32_t p
     return !portals_exclude(search, frame) && !few_pieces_exclude(search, frame);
 }
 
-/// Lines may be given by their points in any two portals on the way. From the first to the last is best as a
-/// rule; where portals touch, others may decide what these can't.
-static enf_pieces_answer ask_pieces(hidden_search *search, const hidden_frame *frame) {
-    int32_t depth = (int32_t)(frame - search->stack);
-    enf_pieces_answer answer = ENF_PIECES_OPEN;
-    for (int32_t length = depth; length > 0 && answer == ENF_PIECES_OPEN; length--)
-        for (int32_t at = 0; at + length <= depth && answer == ENF_PIECES_OPEN; at++)
-            answer = enf_hidden_pieces_ask(&search->pieces, search->stack[at].portal >> 1,
-                                           search->stack[at + length].portal >> 1, search->column_edge,
-                                           search->proof.corner_next, frame->column_count);
-    return answer;
-}
-
 /// For neighbours: a line through the middle of the only portal, square to it.
 static void make_straight_line(const hidden_search *search, int32_t portal, double from[3], double to[3]) {
     const enf_portal_graph *graph = search->graph;
@@ -200,7 +187,7 @@ bool hidden_search_pieces(hidden_search *search, const hidden_frame *frame, enf_
     enf_hidden_pieces *work = &search->pieces;
     work->limit = search->options->piece_limit ? search->options->piece_limit : PIECE_LIMIT;
     search->report->asked++;
-    enf_pieces_answer answer = ask_pieces(search, frame);
+    enf_pieces_answer answer = hidden_search_in_order(search, frame);
     bool neighbours = frame == search->stack;
     if (neighbours) make_straight_line(search, frame->portal, work->from, work->to);
     pair->cell[0] = enf_portal_from(search->graph, search->stack[0].portal);

@@ -41,6 +41,9 @@ typedef struct hidden_search {
     double (*columns)[ENF_LINE_ROWS]; ///< of the edges on the way
     int32_t *column_edge;             ///< which edges they are, as in hidden_proof.h
     size_t column_capacity, column_edge_capacity;
+    enf_piece_side *sides; ///< that the order asks for, in hidden_order.c
+    int32_t side_count;
+    size_t side_capacity;
     bool failed; ///< no memory
 } hidden_search;
 
@@ -54,5 +57,10 @@ bool hidden_search_program(hidden_search *search, hidden_frame *frame, int32_t p
 /// For a whole sequence, of which `frame` is the last one on the stack, that no certificate rules out: is it
 /// hidden nevertheless? If not, *pair has what was found.
 bool hidden_search_pieces(hidden_search *search, const hidden_frame *frame, enf_hidden_pair *pair);
+
+// ---- hidden_order.c
+/// Is there a line that comes to all portals of the sequence up to `frame`, in order? The line of SEEN is the
+/// pieces' one.
+enf_pieces_answer hidden_search_in_order(hidden_search *search, const hidden_frame *frame);
 
 #endif

@@ -8,9 +8,14 @@
 
 #include <gmp.h>
 
-/// The line is directed from -> to, which differ. Windings that are not planar have several planes, through
-/// their first corner and an edge; any two of them in order will do.
+/// The line is directed from -> to, which differ, and passes all edges of both portals. It comes to a portal
+/// in that triangle of the fan from the winding's first corner that it goes through. The second place has to
+/// lie ahead of the first, strictly.
 bool enf_witness_in_order(const enf_portal_graph *graph, mpq_t from[3], mpq_t to[3], int32_t first,
                           int32_t second);
+
+/// The same as enf_witness_in_order by doubles: true if it is certain.
+bool enf_witness_surely_in_order(const enf_portal_graph *graph, const double from[3], const double to[3],
+                                 int32_t first, int32_t second);
 
 #endif
