@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The visible sets of compiled worlds: nothing that lines join is missing, little else is claimed, rungs lie
+// within each other, and threads do not matter.
+#include "build/build.h"
+#include "build/gen.h"
+#include "build/write.h"
+#include "visibility/world_lines.h"
+#include "visibility/world_visibility.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "shared_data.h"
+
+typedef struct world {
+    enf_build build;
+    enf_image image;
+    enf_world_air air;
+} world;
+
+static void compile(world *world, const char *path) {
+    enf_error error = {0};
+    enf_build_options options = {.clean = {.weld = -1, .plane_tolerance = -1}, .threads = 1};
+    memset(world, 0, sizeof *world);
+    enf_status status = enf_soup_read(&world->build.soup, path, &error);
+    if (!status) status = enf_build_run(&world->build, &options, &error);
+    if (!status) status = enf_image_make(&world->image, &world->build, "{}", &error);
+    if (!status) status = enf_world_air_make(&world->air, &world->image.view, &error);
+    if (status) fail_msg("%s: %s", path, error.text);
+}
+
+/// `text`: an OBJ; or null, for the built-in world of that name.
+static void make(world *world, const char *name, const char *text) {
+    char path[] = "world-pvs-XXXXXX.obj";
+    int file = mkstemps(path, 4);
+    assert_true(file >= 0);
+    FILE *out = fdopen(file, "w");
+    enf_error error = {0};
+    if (text)
+        fputs(text, out);
+    else
+        assert_int_equal(enf_gen_write(name, NULL, 0, out, &error), ENF_OK);
+    fclose(out);
+    compile(world, path);
+    remove(path);
+}
+
+static void drop(world *world) {
+    enf_world_air_free(&world->air);
+    enf_image_free(&world->image);
+    enf_build_free(&world->build);
+}
+
+static enf_pvs find(const world *world, enf_method method, int threads) {
+    const enf_visibility_options options = {.method = method, .threads = threads};
+    enf_visibility visibility;
+    enf_error error = {0};
+    if (enf_world_visibility_run(&visibility, &world->air, &world->image.view, &options, &error))
+        fail_msg("%s", error.text);
+    enf_pvs pvs = visibility.pvs;
+    visibility.pvs = (enf_pvs){0};
+    enf_visibility_free(&visibility);
+    return pvs;
+}
+
+static size_t words_of(const enf_pvs *pvs) {
+    return (size_t)pvs->cell_count * pvs->row_words;
+}
+
+static void assert_within(const enf_pvs *inner, const enf_pvs *outer) {
+    for (size_t w = 0; w < words_of(inner); w++) assert_true((inner->rows[w] & ~outer->rows[w]) == 0);
+}
+
+static void assert_symmetric(const enf_pvs *pvs) {
+    for (int32_t i = 0; i < pvs->cell_count; i++)
+        for (int32_t j = 0; j <= i; j++) assert_int_equal(enf_pvs_get(pvs, i, j), enf_pvs_get(pvs, j, i));
+}
+
+/// Throws lines at all pairs that are not seen, claimed or not. No pair may be seen and not claimed; of those
+/// seen, at most `excess` as many more may be claimed.
+static void assert_near_truth(const world *world, const enf_pvs *claimed, const enf_pvs *all, int rounds,
+                              double excess) {
+    enf_world_lines lines;
+    enf_error error = {0};
+    assert_int_equal(enf_world_lines_make(&lines, &world->image.view, 7, &error), ENF_OK);
+    for (int i = 0; i < 3; i++) enf_world_lines_aim(&lines, all, 4, INT64_MAX);
+    for (int i = 0; i < rounds; i++) enf_world_lines_aim(&lines, claimed, 8, INT64_MAX);
+    assert_within(&lines.seen, claimed);
+    double seen = (double)enf_pvs_pairs(&lines.seen), more = (double)enf_pvs_pairs(claimed) - seen;
+    if (more > excess * seen) fail_msg("%g pairs more than the %g that lines have seen", more, seen);
+    enf_world_lines_free(&lines);
+}
+
+/// All rungs up to one, one after the other.
+static void check(const world *world, enf_method last, int rounds, double excess) {
+    enf_pvs before = find(world, ENF_METHOD_REACH, 1), all = find(world, ENF_METHOD_REACH, 1);
+    for (int m = ENF_METHOD_FACING; m <= (int)last; m++) {
+        enf_pvs pvs = find(world, (enf_method)m, 1);
+        assert_symmetric(&pvs);
+        assert_within(&pvs, &before);
+        assert_near_truth(world, &pvs, &all, m == ENF_METHOD_HOURGLASS ? rounds : 1,
+                          m == ENF_METHOD_HOURGLASS ? excess : 1e9);
+        enf_pvs_free(&before);
+        before = pvs;
+    }
+    enf_pvs_free(&before);
+    enf_pvs_free(&all);
+}
+
+static void test_built_in_worlds(void **unused) {
+    (void)unused;
+    static const char *const names[] = {"four-rooms", "four-rooms-distorted", "cavern", "post", "furnished",
+                                        "office"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        world world;
+        make(&world, names[i], NULL);
+        check(&world, i < 4 ? ENF_METHOD_EXACT : ENF_METHOD_HOURGLASS, 40, 0.15);
+        drop(&world);
+    }
+}
+
+static void test_threads_do_not_matter(void **unused) {
+    (void)unused;
+    world world;
+    make(&world, "office", NULL);
+    enf_pvs one = find(&world, ENF_METHOD_HOURGLASS, 1);
+    for (int threads = 2; threads <= 8; threads += 3) {
+        enf_pvs other = find(&world, ENF_METHOD_HOURGLASS, threads);
+        assert_memory_equal(one.rows, other.rows, words_of(&one) * sizeof *one.rows);
+        enf_pvs_free(&other);
+    }
+    enf_pvs_free(&one);
+    drop(&world);
+}
+
+/// A hall, 12 long, 4 wide, 3 high, that two walls without thickness part, across x; each has a door, 1 wide
+/// and 2 high, at opposite ends: from beyond the one wall only a part of what is beyond the other can be
+/// seen.
+static const char hall[] = "# spawn 1 2 1\n# spawn 6 2 1\n# spawn 11 2 1\n"
+                           "v 0 0 0\nv 12 0 0\nv 12 4 0\nv 0 4 0\nv 0 0 3\nv 12 0 3\nv 12 4 3\nv 0 4 3\n"
+                           "f 1 2 3 4\nf 8 7 6 5\nf 5 6 2 1\nf 6 7 3 2\nf 7 8 4 3\nf 8 5 1 4\n"
+                           "v 5 1 0\nv 5 4 0\nv 5 4 3\nv 5 1 3\nv 5 0 2\nv 5 1 2\nv 5 0 3\n" // 9 to 15
+                           "f 9 10 11 12\nf 13 14 12 15\n"
+                           "v 7 0 0\nv 7 3 0\nv 7 3 3\nv 7 0 3\nv 7 3 2\nv 7 4 2\nv 7 4 3\n" // 16 to 22
+                           "f 16 17 18 19\nf 20 21 22 18\n";
+
+static int32_t count_thin_openings(const enf_portal_graph *graph, double x, double *width) {
+    int32_t count = 0;
+    *width = 0;
+    for (int32_t k = 0; k < graph->opening_count; k++) {
+        bool is_there = true;
+        double low = 1e9, high = -1e9;
+        for (int32_t i = graph->opening_corner[k]; i < graph->opening_corner[k + 1]; i++) {
+            is_there = is_there && graph->corners[i][0] > x - 1e-6 && graph->corners[i][0] < x + 1e-6;
+            low = graph->corners[i][1] < low ? graph->corners[i][1] : low;
+            high = graph->corners[i][1] > high ? graph->corners[i][1] : high;
+        }
+        if (!is_there) continue;
+        count++;
+        *width += high - low;
+    }
+    return count;
+}
+
+static void test_walls_without_thickness(void **unused) {
+    (void)unused;
+    world world;
+    double width;
+    make(&world, NULL, hall);
+    assert_true(world.air.uses_leafs);
+    for (int x = 5; x <= 7; x += 2) {
+        assert_true(count_thin_openings(&world.air.leafs, x, &width) >= 1);
+        assert_true(width < 1 + 1e-6); // the door is left of the wall
+    }
+    check(&world, ENF_METHOD_EXACT, 100, 0.15);
+    drop(&world);
+}
+
+static void test_a_level(void **unused) {
+    (void)unused;
+    char path[4096];
+    world world;
+    snprintf(path, sizeof path, "%s/quake/obj/dm4.obj.gz", shared_data());
+    compile(&world, path);
+    enf_pvs all = find(&world, ENF_METHOD_FACING, 2), pvs = find(&world, ENF_METHOD_HOURGLASS, 2);
+    assert_within(&pvs, &all);
+    assert_symmetric(&pvs);
+    assert_near_truth(&world, &pvs, &all, 5, 0.15);
+    enf_pvs_free(&all);
+    enf_pvs_free(&pvs);
+    drop(&world);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_built_in_worlds), cmocka_unit_test(test_threads_do_not_matter),
+        cmocka_unit_test(test_walls_without_thickness), cmocka_unit_test(test_a_level)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
