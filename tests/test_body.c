@@ -127,6 +127,12 @@ static void make_graph(enf_portal_graph *graph, double height) {
     assert_int_equal(enf_portal_graph_finish(graph, &error), ENF_OK);
 }
 
+/// As a body of a single point.
+static bool meets(const enf_separators *separators, const double point[3]) {
+    const double half[3] = {0}, points[1][3] = {{point[0], point[1], point[2]}};
+    return enf_separators_meet(separators, point, half, points, 1);
+}
+
 /// A point of the hull of some points.
 static void mix(const double (*points)[3], int32_t count, double point[3]) {
     double weights[POINTS_MOST], sum = 0;
@@ -156,7 +162,7 @@ static int check_lines(const enf_shapes *shapes, const enf_body *body, const dou
         if (b[2] - a[2] < 1e-3) continue;
         const double share = random_between(0, 3) / (b[2] - a[2]);
         for (int axis = 0; axis < 3; axis++) c[axis] = b[axis] + share * (b[axis] - a[axis]);
-        assert_true(enf_separators_meet(&separators, (const double(*)[3]) & c, 1));
+        assert_true(meets(&separators, c));
         passed++;
     }
     return passed;
@@ -210,8 +216,8 @@ static void test_separators_from_a_body_are_tight(void **unused) {
     const double inside[2][3] = {{2.999, 0, 3}, {1.499, 1.499, 3}},
                  outside[2][3] = {{3.001, 0, 3}, {2.001, 2.001, 3}};
     for (int i = 0; i < 2; i++) {
-        assert_true(enf_separators_meet(&separators, &inside[i], 1));
-        assert_false(enf_separators_meet(&separators, &outside[i], 1));
+        assert_true(meets(&separators, inside[i]));
+        assert_false(meets(&separators, outside[i]));
     }
     enf_shapes_free(&shapes);
     enf_portal_graph_free(&graph);

@@ -184,14 +184,6 @@ static bool slice_all(slicer *slicer, const enf_file_view *view) {
 
 // ---------------------------------------------------------------------------------------------- parts
 
-void enf_bodies_free(enf_bodies *parts) {
-    free(parts->cell_first);
-    free(parts->owner);
-    free(parts->corner_first);
-    free(parts->corners);
-    *parts = (enf_bodies){0};
-}
-
 static int compare_pieces(const void *a, const void *b) {
     const piece *one = a, *other = b;
     if (one->leaf != other->leaf) return one->leaf < other->leaf ? -1 : 1;
@@ -270,7 +262,7 @@ enf_status enf_air_parts_make(enf_air_parts *air, const enf_air_tree *tree, cons
     if (good) {
         qsort(slicer.pieces, (size_t)slicer.piece_count, sizeof *slicer.pieces, compare_pieces);
         drop_thin(&slicer);
-        good = join_pieces(air, &slicer, view->cell_count);
+        good = join_pieces(air, &slicer, view->cell_count) && enf_bodies_find_boxes(&air->bodies);
     }
     free(slicer.stack);
     free(slicer.cap);

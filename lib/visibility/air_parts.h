@@ -8,7 +8,7 @@
 
 /// What the leafs of a world's air hold.
 typedef struct enf_air_parts {
-    enf_bodies bodies;    ///< of cells, in the leafs that are air
+    enf_bodies bodies;  ///< of cells, in the leafs that are air
     int32_t *leaf_of;   ///< per leaf of the tree its number among those, or -1: rock
     int32_t lost_count; ///< cells that reach into no leaf: thinner than the tree's tolerance everywhere
     int32_t *lost;

@@ -233,7 +233,8 @@ static void meet_bodies(enf_beams *beams, int32_t via, bool *ready) {
         if (!*ready) find_separators(beams, via);
         *ready = true;
         int32_t first = bodies->corner_first[body];
-        if (enf_separators_meet(&beams->separators, (const double(*)[3])(bodies->corners + first),
+        if (enf_separators_meet(&beams->separators, bodies->middle[body], bodies->half[body],
+                                (const double(*)[3])(bodies->corners + first),
                                 bodies->corner_first[body + 1] - first))
             enf_bit_set(beams->source.met, body);
     }

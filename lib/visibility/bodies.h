@@ -13,7 +13,12 @@ typedef struct enf_bodies {
     int32_t *owner;        ///< what each is a part of; ascending within a cell
     int32_t *corner_first; ///< count + 1 offsets into corners
     double (*corners)[3];  ///< the hull of a body's corners holds the body
+    double (*middle)[3];   ///< count: of the box around each
+    double (*half)[3];     ///< how far it reaches from there
 } enf_bodies;
+
+/// Finds the boxes, when all else is there. False without memory.
+bool enf_bodies_find_boxes(enf_bodies *bodies);
 
 void enf_bodies_free(enf_bodies *bodies);
 

@@ -255,44 +255,74 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
     enf_separators_between(separators, shapes, &one, from_portal, &two, to_portal);
 }
 
-/// The planes through four edges of the body that touch the window. They have the body behind them if they do
-/// not come into the wedge of the two faces.
-ENF_PART_OF_WIDE tangents find_body_tangents(const passage *passage, const enf_body *body, int32_t first,
-                                             double side) {
-    enf_four a[3], edge[3], left[3], right[3], normal[3];
-    tangents tangents;
+/// Four edges of a body, and the two planes through each that touch the window, by their normals of any
+/// length.
+typedef struct body_edges {
+    enf_four a[3], left[3], right[3];
+    enf_four normals[2][3];
+} body_edges;
+
+/// Turns a plane on to a corner that lies behind it.
+ENF_PART_OF_WIDE void turn_on(enf_four normal[3], const enf_four way[3], const enf_four next[3]) {
+    const enf_four_mask behind = dot_four(normal, way) < 0;
+    for (int axis = 0; axis < 3; axis++) normal[axis] = enf_four_choose(behind, next[axis], normal[axis]);
+}
+
+/// As turn_to, both ways round.
+ENF_PART_OF_WIDE void turn_body_edges(const passage *passage, const enf_body *body, int32_t first,
+                                      body_edges *edges) {
+    const enf_outline *window = passage->one;
+    enf_four edge[3], way[3], next[3], opposite[3];
     for (int axis = 0; axis < 3; axis++) {
-        a[axis] = enf_four_load(body->from[axis] + first);
-        edge[axis] = side * enf_four_load(body->along[axis] + first);
-        left[axis] = enf_four_load(body->left[axis] + first);
-        right[axis] = enf_four_load(body->right[axis] + first);
+        edges->a[axis] = enf_four_load(body->from[axis] + first);
+        edge[axis] = enf_four_load(body->along[axis] + first);
+        edges->left[axis] = enf_four_load(body->left[axis] + first);
+        edges->right[axis] = enf_four_load(body->right[axis] + first);
     }
-    turn_to(passage->one, a, edge, normal);
+    for (int32_t i = 0; i < window->count; i++) {
+        for (int axis = 0; axis < 3; axis++) way[axis] = window->at[axis][i] - edges->a[axis];
+        cross_four(edge, way, next);
+        for (int axis = 0; axis < 3; axis++) {
+            opposite[axis] = -next[axis];
+            if (i > 0) continue;
+            edges->normals[0][axis] = next[axis];
+            edges->normals[1][axis] = opposite[axis];
+        }
+        turn_on(edges->normals[0], way, next);
+        turn_on(edges->normals[1], way, opposite);
+    }
+}
+
+/// Adds those of four planes that part the body and the window. They have the body behind them if they do not
+/// come into the wedge of the two faces.
+ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passage *passage,
+                                        const body_edges *edges, const enf_four normal[3],
+                                        enf_four_mask good) {
+    good &= (dot_four(normal, edges->left) <= 0) & (dot_four(normal, edges->right) <= 0);
+    if (!enf_four_bits(good)) return;
+    const double swing = find_swing(passage, passage->gap), tolerance = passage->shapes->tolerance;
     const enf_four square = dot_four(normal, normal), inverse = inverse_root(square);
-    for (int axis = 0; axis < 3; axis++) tangents.normal[axis] = normal[axis] * inverse;
-    tangents.tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse;
-    tangents.behind = dot_four(tangents.normal, a);
-    tangents.front = lowest(passage->one, tangents.normal);
-    tangents.good = (square > 0) & (inverse < HUGE_VAL) & (dot_four(tangents.normal, left) <= 0) &
-                    (dot_four(tangents.normal, right) <= 0) &
-                    (tangents.behind <= tangents.front + passage->shapes->tolerance);
-    return tangents;
+    enf_four unit[3];
+    for (int axis = 0; axis < 3; axis++) unit[axis] = normal[axis] * inverse;
+    const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit),
+                   tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse,
+                   slack = tolerance * (tilt + swing);
+    good &= (square > 0) & (inverse < HUGE_VAL) & (behind <= front + tolerance) &
+            (slack <= passage->shapes->extent);
+    add_good(separators, unit, front - slack, good);
 }
 
 /// The planes through edges of the body. `one` of the passage is the window, `other` the body.
 ENF_PART_OF_WIDE void add_body_planes(enf_separators *separators, const passage *passage,
                                       const enf_body *body) {
-    const double swing = find_swing(passage, passage->gap), tolerance = passage->shapes->tolerance;
-    for (int32_t first = 0; first < body->edge_count; first += ENF_FOUR)
-        for (int side = -1; side < 2; side += 2) {
-            if (separators->count > ENF_SEPARATORS_MOST - ENF_FOUR) return;
-            const tangents tangents = find_body_tangents(passage, body, first, side);
-            const int64_t rest = body->edge_count - first;
-            const enf_four slack = tolerance * (tangents.tilt + swing);
-            const enf_four_mask good =
-                tangents.good & ((enf_four_mask){0, 1, 2, 3} < rest) & (slack <= passage->shapes->extent);
-            add_good(separators, tangents.normal, tangents.front - slack, good);
-        }
+    for (int32_t first = 0; first < body->edge_count; first += ENF_FOUR) {
+        if (separators->count > ENF_SEPARATORS_MOST - 2 * ENF_FOUR) return;
+        const enf_four_mask there = (enf_four_mask){0, 1, 2, 3} < (int64_t)(body->edge_count - first);
+        body_edges edges;
+        turn_body_edges(passage, body, first, &edges);
+        for (int side = 0; side < 2; side++)
+            add_body_tangents(separators, passage, &edges, edges.normals[side], there);
+    }
 }
 
 ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes,
@@ -317,13 +347,39 @@ ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf
     close_separators(separators);
 }
 
-bool enf_separators_meet(const enf_separators *separators, const double (*points)[3], int32_t count) {
-    for (int32_t i = 0; i < separators->count; i++) {
+/// The cuts that may leave nothing of a box, as far as its middle tells; false in *some if one of them surely
+/// does.
+ENF_PART_OF_WIDE uint64_t find_doubtful(const enf_separators *separators, const double middle[3],
+                                        const double half[3], bool *some) {
+    uint64_t doubtful = 0;
+    *some = true;
+    for (int32_t first = 0; first < separators->count; first += ENF_FOUR) {
+        enf_four height = -enf_four_load(separators->least + first), reach = enf_four_all(0);
+        for (int axis = 0; axis < 3; axis++) {
+            const enf_four normal = enf_four_load(separators->normal[axis] + first);
+            height += middle[axis] * normal;
+            reach += half[axis] * enf_four_abs(normal);
+        }
+        if (enf_four_bits(height + reach < 0)) {
+            *some = false;
+            return 0;
+        }
+        doubtful |= (uint64_t)enf_four_bits(height < 0) << first;
+    }
+    return doubtful;
+}
+
+ENF_WIDE_TOO bool enf_separators_meet(const enf_separators *separators, const double middle[3],
+                                      const double half[3], const double (*points)[3], int32_t count) {
+    bool some;
+    uint64_t doubtful = find_doubtful(separators, middle, half, &some);
+    for (; some && doubtful; doubtful &= doubtful - 1) {
+        const int32_t i = __builtin_ctzll(doubtful);
         const double normal[3] = {separators->normal[0][i], separators->normal[1][i],
                                   separators->normal[2][i]};
         int32_t k = 0;
         while (k < count && enf_dot(normal, points[k]) < separators->least[i]) k++;
-        if (k == count) return false;
+        some = k < count;
     }
-    return true;
+    return some;
 }

@@ -36,8 +36,10 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
 void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes, const enf_body *body,
                               const enf_outline *to, int32_t to_portal);
 
-/// May they leave something of the hull of these points?
-bool enf_separators_meet(const enf_separators *separators, const double (*points)[3], int32_t count);
+/// May they leave something of the hull of these points? The box around them, middle and half, is asked
+/// first.
+bool enf_separators_meet(const enf_separators *separators, const double middle[3], const double half[3],
+                         const double (*points)[3], int32_t count);
 
 typedef enum enf_remains { ENF_REMAINS_NOTHING, ENF_REMAINS_PART, ENF_REMAINS_WHOLE } enf_remains;
 
