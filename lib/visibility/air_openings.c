@@ -92,45 +92,51 @@ static bool add_opening(maker *maker, int32_t behind, int32_t front, const doubl
                                 corners, count);
 }
 
-/// Takes the thin wall out of each of the sheets; what is left of them is in the stack again.
-static bool take_out(maker *maker, const enf_wall *wall, sheet **sheets, size_t *capacity, int32_t *count) {
-    int32_t before = *count, kept = 0;
-    for (int32_t s = 0; s < before; s++) {
-        sheet rest = (*sheets)[s], out;
-        int32_t made = 0, begin = *count;
-        for (int32_t i = 0; rest.count > 0 && i < wall->count; i++) {
-            const double *a = maker->walls->corners[wall->first + i];
-            const double *b = maker->walls->corners[wall->first + (i + 1 < wall->count ? i + 1 : 0)];
-            double outwards[3], length;
-            for (int axis = 0; axis < 3; axis++) {
-                int u = (axis + 1) % 3, v = (axis + 2) % 3;
-                outwards[axis] = (b[u] - a[u]) * wall->normal[v] - (b[v] - a[v]) * wall->normal[u];
-            }
-            length = sqrt(enf_dot(outwards, outwards));
-            if (!(length > 0)) continue;
-            for (int axis = 0; axis < 3; axis++) outwards[axis] /= length;
-            sheet inside;
-            double offset = enf_dot(outwards, a);
-            if (!push_half(maker, &rest, outwards, offset, 1, &out) ||
-                !push_half(maker, &rest, outwards, offset, -1, &inside) ||
-                !enf_array_reserve(*sheets, *capacity, *count + 1))
-                return false;
-            if (out.count > 0) (*sheets)[(*count)++] = out, made++;
-            rest = inside;
-        }
-        if (rest.count > 0 && made == 0) { // all of it is wall
-            *count = begin;
-            (*sheets)[s].count = 0;
-        } else if (rest.count > 0) {
-            (*sheets)[s].count = 0; // what is left stands at the end
-        } else {
-            *count = begin; // the wall is elsewhere
-        }
-    }
-    for (int32_t s = 0; s < *count; s++)
-        if ((*sheets)[s].count > 0) (*sheets)[kept++] = (*sheets)[s];
-    *count = kept;
+/// Convex polygons in the maker's stack.
+typedef struct sheets {
+    sheet *items;
+    int32_t count;
+    size_t capacity;
+} sheets;
+
+static bool append(sheets *sheets, const sheet *sheet) {
+    if (!enf_array_reserve(sheets->items, sheets->capacity, sheets->count + 1)) return false;
+    sheets->items[sheets->count++] = *sheet;
     return true;
+}
+
+/// The line of a wall's edge within its plane: what is outside lies in front. False if the edge has no
+/// length.
+static bool find_edge(const maker *maker, const enf_wall *wall, int32_t edge, double outwards[3],
+                      double *offset) {
+    const double *a = maker->walls->corners[wall->first + edge];
+    const double *b = maker->walls->corners[wall->first + (edge + 1 < wall->count ? edge + 1 : 0)];
+    for (int axis = 0; axis < 3; axis++) {
+        int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        outwards[axis] = (b[u] - a[u]) * wall->normal[v] - (b[v] - a[v]) * wall->normal[u];
+    }
+    double length = sqrt(enf_dot(outwards, outwards));
+    if (!(length > 0)) return false;
+    for (int axis = 0; axis < 3; axis++) outwards[axis] /= length;
+    *offset = enf_dot(outwards, a);
+    return true;
+}
+
+/// Appends what a thin wall leaves of a sheet: what lies outside of one edge after the other.
+static bool take_out_of(maker *maker, const enf_wall *wall, const sheet *whole, sheets *left) {
+    sheet rest = *whole, out, inside;
+    int32_t before = left->count;
+    for (int32_t i = 0; i < wall->count && rest.count > 0; i++) {
+        double outwards[3], offset;
+        if (!find_edge(maker, wall, i, outwards, &offset)) continue;
+        if (!push_half(maker, &rest, outwards, offset, 1, &out) ||
+            !push_half(maker, &rest, outwards, offset, -1, &inside) || (out.count > 0 && !append(left, &out)))
+            return false;
+        rest = inside;
+    }
+    if (rest.count > 0) return true;
+    left->count = before; // the wall is elsewhere
+    return append(left, whole);
 }
 
 /// Adds the hull of the sheets as one opening if it is no larger than they are together, or each by itself.
@@ -157,18 +163,22 @@ static bool add_sheets(maker *maker, int32_t behind, int32_t front, const sheet 
     return good;
 }
 
-/// What thin walls leave of the sheet.
+/// Adds what thin walls leave of the sheet.
 static bool pierce(maker *maker, int32_t behind, int32_t front, const sheet *sheet) {
-    size_t kept = maker->count, capacity = 0;
-    struct sheet *sheets = NULL;
-    int32_t count = 1;
-    bool good = enf_array_reserve(sheets, capacity, 1);
-    if (good) sheets[0] = *sheet;
-    for (int32_t i = 0; good && i < maker->node->wall_count && count > 0; i++)
-        good = take_out(maker, &maker->walls->walls[maker->tree->thin_walls[maker->node->wall_first + i]],
-                        &sheets, &capacity, &count);
-    if (good && count > 0) good = add_sheets(maker, behind, front, sheets, count);
-    free(sheets);
+    size_t kept = maker->count;
+    sheets lists[2] = {{0}};
+    int now = 0;
+    bool good = append(&lists[now], sheet);
+    for (int32_t i = 0; good && i < maker->node->wall_count; i++, now = !now) {
+        const enf_wall *wall = &maker->walls->walls[maker->tree->thin_walls[maker->node->wall_first + i]];
+        lists[!now].count = 0;
+        for (int32_t s = 0; good && s < lists[now].count; s++)
+            good = take_out_of(maker, wall, &lists[now].items[s], &lists[!now]);
+    }
+    if (good && lists[now].count > 0)
+        good = add_sheets(maker, behind, front, lists[now].items, lists[now].count);
+    free(lists[0].items);
+    free(lists[1].items);
     maker->count = kept;
     return good;
 }
