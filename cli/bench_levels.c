@@ -7,6 +7,7 @@
 #include "cli/bench_folder.h"
 #include "cli/cli.h"
 #include "cli/job.h"
+#include "visibility/check_world_pvs.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -27,6 +28,7 @@ static enf_status check_build(const cli_job *job, verdict *verdict, enf_error *e
     enf_check_report *report = calloc(1, sizeof *report);
     double started = enf_timer_now();
     status = report ? enf_world_check(&image.view, report, error) : enf_fail_memory(error, "the report");
+    if (!status) status = enf_world_check_pvs(&image.view, report, error);
     verdict->seconds = enf_timer_now() - started;
     verdict->held = status == ENF_OK;
     if (status == ENF_CHECK_FAILED) {

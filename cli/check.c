@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // enfilade check: every invariant, exactly. A row per invariant; the status says whether all hold.
 #include "cli/check.h"
+#include "visibility/check_world_pvs.h"
 
 #include "build/json.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "enfilade/run.h"
+#include "visibility/check_world_pvs.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -64,6 +66,7 @@ static int check_world(const char *path, bool as_json) {
     enf_check_report *report = calloc(1, sizeof *report);
     enf_status status = report ? enf_world_check(enf_world_file(world), report, &wrong)
                                : enf_fail_memory(&wrong, "the report");
+    if (!status) status = enf_world_check_pvs(enf_world_file(world), report, &wrong);
     if (status == ENF_OK || status == ENF_CHECK_FAILED) cli_print_check(report, as_json);
     if (status) {
         enf_fail(&error, status, "%s: %.900s", path, wrong.text);

@@ -137,6 +137,9 @@ static void worlds_have_visible_sets(void **state) {
         assert_non_null(strstr(ran.out, "visibility: lines"));
         process_free(&ran);
     }
+    expect_failure("pvs rooms.enf -o out.txt --witness lines.txt", 2,
+                   "lines can be had for portal files only");
+    assert_false(file_exists("lines.txt"));
 }
 
 static void the_report_has_the_fixed_keys(void **state) {

@@ -59,7 +59,7 @@ static void run_stages(enf_checker *checker) {
     static stage *const stages[] = {enf_check_clean, enf_check_tetrahedra, enf_check_split,
                                     enf_check_trees, enf_check_covers,     enf_check_connect,
                                     enf_check_seen,  enf_check_colour,     enf_check_decimate,
-                                    enf_check_drawn, enf_check_portals,    enf_check_visibility};
+                                    enf_check_drawn, enf_check_portals};
     for (size_t i = 0; i < sizeof stages / sizeof *stages && whole_so_far(checker); i++) stages[i](checker);
     if (!checker->failed) enf_check_file(checker);
 }

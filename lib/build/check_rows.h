@@ -86,7 +86,6 @@ void enf_check_colour(enf_checker *checker);
 void enf_check_decimate(enf_checker *checker);
 void enf_check_drawn(enf_checker *checker); ///< a row of decimate
 void enf_check_portals(enf_checker *checker);
-void enf_check_visibility(enf_checker *checker); ///< nothing if there is no visible set
 void enf_check_file(enf_checker *checker);
 
 #endif

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The visible set, if the file has one: it is a relation of the kind it should be, and lines thrown through
-// the fine cells join no two cells that it says are hidden from each other. Lines can't prove it complete;
-// they find what is badly wrong.
-#include "build/check_rows.h"
+#include "visibility/check_world_pvs.h"
 
 #include "base/array.h"
+#include "build/check_rows.h"
 #include "format/pvs_row.h"
 #include "visibility/pvs.h"
 #include "visibility/world_lines.h"
@@ -78,14 +76,17 @@ static void check_lines(enf_checker *checker, const enf_pvs *pvs) {
     enf_world_lines_free(&lines);
 }
 
-void enf_check_visibility(enf_checker *checker) {
-    if (!checker->view->pvs) return;
+enf_status enf_world_check_pvs(const enf_file_view *view, enf_check_report *report, enf_error *error) {
+    if (!view->pvs) return ENF_OK;
+    enf_checker checker = {.view = view, .report = report};
     enf_pvs pvs = {0};
-    if (take_rows(checker->view, &pvs)) {
-        check_relation(checker, &pvs);
-        if (enf_check_holds(checker)) check_lines(checker, &pvs);
+    if (take_rows(view, &pvs)) {
+        check_relation(&checker, &pvs);
+        if (enf_check_holds(&checker)) check_lines(&checker, &pvs);
     } else {
-        enf_check_no_memory(checker);
+        enf_check_no_memory(&checker);
     }
     enf_pvs_free(&pvs);
+    if (checker.failed) return enf_fail_memory(error, "checking the visible set");
+    return report->broken_count > 0 ? enf_fail(error, ENF_CHECK_FAILED, "%s", report->first) : ENF_OK;
 }
