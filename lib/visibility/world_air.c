@@ -23,14 +23,18 @@ static enf_status partition(enf_world_air *air, const enf_air_tree *tree, const 
     return status;
 }
 
-/// Walls of rock that share no planes make many leafs of few cells. Beams through leafs cost about as many
-/// times more as there are more openings; they are not worth more than this.
-static const double leafs_worth = 4;
+/// Walls of rock that share no planes make more leafs than cells. Beams through leafs take about as many
+/// times longer as there are more openings, and more memory by the square; they are not worth more than this.
+static const double leafs_worth = 4, leafs_most = 8000;
+
+static bool are_worth_it(double leafs, double portals) {
+    return leafs <= portals || (leafs <= leafs_worth * (1 + portals) && leafs <= leafs_most);
+}
 
 /// Portals of cells are worth looking at where there are not more of them than of leafs.
 static void choose(enf_world_air *air, bool is_partitioned) {
     double portals = air->portals.opening_count, leafs = air->leafs.opening_count;
-    air->uses_leafs = is_partitioned && leafs <= leafs_worth * (1 + portals);
+    air->uses_leafs = is_partitioned && are_worth_it(leafs, portals);
     air->uses_portals = !air->uses_leafs || portals <= leafs;
     if (!air->uses_portals) enf_portal_graph_free(&air->portals);
     if (air->uses_leafs) return;
