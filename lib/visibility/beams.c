@@ -102,7 +102,10 @@ static bool is_open_behind(const enf_beams *beams, int32_t portal) {
 }
 
 static void push(enf_beams *beams, int32_t source, int32_t portal) {
-    if (!is_open_behind(beams, portal)) return;
+    if (!is_open_behind(beams, portal)) {
+        enf_bit_clear(beams->open, portal);
+        return;
+    }
     const double *centre = beams->shapes->shapes[portal >> 1].centre;
     const waiting new = {enf_shape_height(beams->shapes, source, centre), portal};
     int32_t at = beams->heap_count++;
