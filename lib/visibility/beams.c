@@ -130,7 +130,10 @@ static double find_depth(const enf_beams *beams, int32_t portal) {
 }
 
 static void push(enf_beams *beams, int32_t portal) {
-    if (!is_open_behind(beams, portal)) return;
+    if (!is_open_behind(beams, portal)) {
+        enf_bit_clear(beams->open, portal);
+        return;
+    }
     const waiting new = {find_depth(beams, portal), portal};
     int32_t at = beams->heap_count++;
     for (; at > 0 && is_nearer(beams, &new, &beams->heap[(at - 1) / 2]); at = (at - 1) / 2)

@@ -16,12 +16,12 @@ typedef struct flooder {
     uint64_t *done; ///< a row of portals: looked at
 } flooder;
 
-/// What is looked at first, side by side: a line of the cache.
+/// What is looked at first, side by side: a line of the cache. For planes along the axes, which most are in
+/// buildings, it is enough.
 typedef struct face {
-    double low[3], high[3]; ///< the box
-    double plane;           ///< where it is along the axis that it is flat along
-    int32_t axis;           ///< that; -1: not flat along any
-    bool up;                ///< the normal of portal 2k points up that axis
+    double ends[6]; ///< of the box: how far it goes up each axis, and down
+    double end[2];  ///< portal 2k, and its twin: the opening is in front as far as it goes further than this,
+    int8_t towards[2]; ///< this way: an index into ends; -1: the plane is not along the axes
 } face;
 
 typedef struct search {
@@ -49,22 +49,25 @@ static answer has_corner(const enf_shapes *shapes, int32_t portal, int32_t openi
     return highest > shapes->tolerance ? YES : highest < -shapes->tolerance ? NO : UNSURE;
 }
 
-/// The same, sure. For a plane along the axes, which most are in buildings, that is quick.
-static bool reaches(const search *search, int32_t portal, int32_t opening, bool above) {
+/// The same, sure: in front, or behind, of a portal.
+static bool reaches(const search *search, int32_t portal, int32_t opening, bool in_front) {
     const face *plane = &search->faces[portal >> 1], *face = &search->faces[opening];
-    const bool forward = above == !(portal & 1);
-    if (plane->axis >= 0)
-        return plane->up == forward ? face->high[plane->axis] > plane->plane
-                                    : face->low[plane->axis] < plane->plane;
-    const answer quick = has_corner(search->shapes, portal, opening, above ? 1 : -1);
+    const int side = (portal & 1) == in_front;
+    if (plane->towards[0] >= 0) return face->ends[plane->towards[side]] > plane->end[side];
+    const answer quick = has_corner(search->shapes, portal, opening, in_front ? 1 : -1);
     if (quick != UNSURE) return quick == YES;
-    return enf_opening_is_beyond(&search->whole, portal >> 1, opening, forward ? 1 : -1);
+    return enf_opening_is_beyond(&search->whole, portal >> 1, opening, side ? -1 : 1);
 }
 
 /// Could a line pass the one portal and then the other?
 static bool is_facing(const search *search, int32_t portal, int32_t other) {
-    return portal >> 1 != other >> 1 && reaches(search, portal, other >> 1, true) &&
-           reaches(search, other, portal >> 1, false);
+    const face *one = &search->faces[portal >> 1], *two = &search->faces[other >> 1];
+    const int front = portal & 1, back = !(other & 1);
+    if (one == two) return false;
+    if (one->towards[0] >= 0 && two->towards[0] >= 0)
+        return (two->ends[one->towards[front]] > one->end[front]) &
+               (one->ends[two->towards[back]] > two->end[back]);
+    return reaches(search, portal, other >> 1, true) && reaches(search, other, portal >> 1, false);
 }
 
 /// Each portal is looked at once.
@@ -102,11 +105,15 @@ static bool make_faces(search *search) {
     for (int32_t k = 0; search->faces && k < shapes->graph->opening_count; k++) {
         const enf_shape *shape = &shapes->shapes[k];
         face *face = &search->faces[k];
-        memcpy(face->low, shape->low, sizeof face->low);
-        memcpy(face->high, shape->high, sizeof face->high);
-        face->axis = shape->flat_axis;
-        face->plane = face->axis >= 0 ? face->low[face->axis] : 0;
-        face->up = face->axis >= 0 && shape->normal[face->axis] > 0;
+        for (int axis = 0; axis < 3; axis++) {
+            face->ends[axis] = shape->high[axis];
+            face->ends[3 + axis] = -shape->low[axis];
+        }
+        const int axis = shape->flat_axis, down = axis >= 0 && shape->normal[axis] < 0;
+        for (int twin = 0; twin < 2; twin++) {
+            face->towards[twin] = (int8_t)(axis < 0 ? -1 : twin == down ? axis : 3 + axis);
+            face->end[twin] = axis < 0 ? 0 : twin == down ? shape->high[axis] : -shape->low[axis];
+        }
     }
     return search->faces != NULL;
 }

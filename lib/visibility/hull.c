@@ -117,8 +117,9 @@ static void find_sides(const enf_window *window, double u, double v, const int32
     }
 }
 
-/// A run of edges, round the end perhaps, that holds all of some, and of others what is next to them. False if
-/// there is no such run, or if nothing else is left. *first and *after are the edges that it begins and ends at.
+/// A run of edges, round the end perhaps, that holds all of some, and of others what is next to them. False
+/// if there is no such run, or if nothing else is left. *first and *after are the edges that it begins and
+/// ends at.
 static bool find_run(uint64_t some, uint64_t others, int32_t count, int32_t *first, int32_t *after) {
     const uint64_t all = (UINT64_C(1) << count) - 1, twice = others | others << count;
     const int32_t one = __builtin_ctzll(some), ahead = __builtin_ctzll(~(twice >> one)),

@@ -78,11 +78,16 @@ ENF_PART_OF_WIDE enf_four highest(const enf_outline *outline, const enf_four nor
     return highest;
 }
 
-ENF_PART_OF_WIDE enf_four lowest(const enf_outline *outline, const enf_four normal[3]) {
+/// The lowest corner, and the one that is next to it.
+ENF_PART_OF_WIDE enf_four lowest(const enf_outline *outline, const enf_four normal[3], enf_four *second) {
     enf_four lowest = enf_four_all(HUGE_VAL);
-    for (int32_t i = 0; i < outline->count; i++)
-        lowest = enf_four_min(lowest, outline->at[0][i] * normal[0] + outline->at[1][i] * normal[1] +
-                                          outline->at[2][i] * normal[2]);
+    *second = lowest;
+    for (int32_t i = 0; i < outline->count; i++) {
+        const enf_four height =
+            outline->at[0][i] * normal[0] + outline->at[1][i] * normal[1] + outline->at[2][i] * normal[2];
+        *second = enf_four_min(*second, enf_four_max(lowest, height));
+        lowest = enf_four_min(lowest, height);
+    }
     return lowest;
 }
 
@@ -99,9 +104,12 @@ ENF_PART_OF_WIDE tangents find_tangents(const passage *passage, int32_t first) {
     for (int axis = 0; axis < 3; axis++) tangents.normal[axis] = normal[axis] * inverse;
     tangents.tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse;
     tangents.behind = highest(passage->one, tangents.normal);
-    tangents.front = lowest(passage->other, tangents.normal);
+    enf_four second;
+    tangents.front = lowest(passage->other, tangents.normal, &second);
     tangents.good = (square > 0) & (inverse < HUGE_VAL) &
                     (tangents.behind <= tangents.front + passage->shapes->tolerance);
+    // Planes through edges of both, as parallel edges have them, are found from the first already.
+    if (!passage->forward) tangents.good &= second > tangents.front + passage->shapes->tolerance;
     return tangents;
 }
 
@@ -198,19 +206,24 @@ static double find_span(const enf_shapes *shapes, int32_t portal, int32_t other)
     return span;
 }
 
-/// How far apart two openings are at least, going by their spheres and by their boxes.
-static double find_gap(const enf_shapes *shapes, int32_t portal, int32_t other) {
-    const enf_shape *one = &shapes->shapes[portal >> 1], *two = &shapes->shapes[other >> 1];
-    double way[3], apart[3];
+/// How far apart the boxes around two openings are.
+static double find_box_gap(const enf_shape *one, const enf_shape *two) {
+    double apart[3];
     for (int axis = 0; axis < 3; axis++) {
-        way[axis] = one->centre[axis] - two->centre[axis];
         const double between =
             fabs(one->middle[axis] - two->middle[axis]) - one->half[axis] - two->half[axis];
         apart[axis] = between > 0 ? between : 0;
     }
-    const double spheres = sqrt(enf_dot(way, way)) - one->radius - two->radius,
-                 boxes = sqrt(enf_dot(apart, apart));
-    return spheres > boxes ? spheres : boxes;
+    return sqrt(enf_dot(apart, apart));
+}
+
+/// How far apart two openings are at least: their spheres; where these meet, their boxes.
+static double find_gap(const enf_shapes *shapes, int32_t portal, int32_t other) {
+    const enf_shape *one = &shapes->shapes[portal >> 1], *two = &shapes->shapes[other >> 1];
+    double way[3];
+    for (int axis = 0; axis < 3; axis++) way[axis] = one->centre[axis] - two->centre[axis];
+    const double gap = sqrt(enf_dot(way, way)) - one->radius - two->radius;
+    return gap < shapes->extent * near ? find_box_gap(one, two) : gap;
 }
 
 /// Fills up the last four.

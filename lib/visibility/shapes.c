@@ -143,9 +143,9 @@ bool enf_shapes_make(enf_shapes *shapes, const enf_portal_graph *graph) {
     size_t corners = (size_t)graph->opening_corner[graph->opening_count];
     *shapes = (enf_shapes){.graph = graph};
     shapes->shapes = enf_array_zeroed((size_t)graph->opening_count, sizeof *shapes->shapes);
-    shapes->corners = enf_array_new(corners, sizeof *shapes->corners);
+    shapes->corners = enf_array_zeroed(corners + 1, sizeof *shapes->corners);
     shapes->outlines = enf_array_zeroed(corners + ENF_OUTLINE_MORE * ((size_t)graph->opening_count + 1),
-                                     3 * sizeof *shapes->outlines);
+                                        3 * sizeof *shapes->outlines);
     shapes->cell_is_convex = enf_array_new((size_t)graph->cell_count, sizeof *shapes->cell_is_convex);
     if (!shapes->shapes || !shapes->corners || !shapes->outlines || !shapes->cell_is_convex) return false;
     double size = measure_size(graph), bend = 0;

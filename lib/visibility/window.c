@@ -11,7 +11,8 @@ void enf_window_copy(enf_window *window, const double (*corners)[3], int32_t cou
 
 void enf_window_take(enf_window *window, const enf_outline *outline) {
     window->count = outline->count;
-    for (int axis = 0; axis < 3; axis++) enf_outline_copy(window->at[axis], outline->at[axis], outline->count);
+    for (int axis = 0; axis < 3; axis++)
+        enf_outline_copy(window->at[axis], outline->at[axis], outline->count);
 }
 
 void enf_window_middle(const enf_window *window, double middle[3]) {
