@@ -109,7 +109,7 @@ ENF_PART_OF_WIDE tangents find_tangents(const passage *passage, int32_t first) {
     tangents.good = (square > 0) & (inverse < HUGE_VAL) &
                     (tangents.behind <= tangents.front + passage->shapes->tolerance);
     // Planes through edges of both, as parallel edges have them, are found from the first already.
-    if (!passage->forward) tangents.good &= second > tangents.front + passage->shapes->tolerance;
+    if (passage->is_second) tangents.good &= second > tangents.front + passage->shapes->tolerance;
     return tangents;
 }
 
@@ -317,7 +317,8 @@ ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passag
     const enf_four square = dot_four(normal, normal), inverse = inverse_root(square);
     enf_four unit[3];
     for (int axis = 0; axis < 3; axis++) unit[axis] = normal[axis] * inverse;
-    const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit),
+    enf_four second;
+    const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit, &second),
                    tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse,
                    slack = tolerance * (tilt + swing);
     good &= (square > 0) & (inverse < HUGE_VAL) & (behind <= front + tolerance) &
