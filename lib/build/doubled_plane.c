@@ -59,22 +59,20 @@ static inline enf_doubled multiply_by(enf_doubled a, double b) {
     return quick_sum(product.high, product.low + a.low * b);
 }
 
-FUSED bool enf_doubled_plane_set(enf_doubled_plane *plane, const double p[3], const int64_t u[3],
-                                 const int64_t v[3], const double origin[3]) {
-    double a[3], b[3], away[3], size = 0, reach = 0;
+FUSED bool enf_doubled_plane_set(enf_doubled_plane *plane, const double p[3], const double u[3],
+                                 const double v[3], const double origin[3]) {
+    double away[3], size = 0, reach = 0;
     bool fits = true;
     for (int i = 0; i < 3; i++) {
-        a[i] = (double)u[i];
-        b[i] = (double)v[i];
         away[i] = origin[i] - p[i];
-        fits &= fabs(a[i]) < WHOLE_MAX && fabs(b[i]) < WHOLE_MAX && fabs(away[i]) < WHOLE_MAX;
+        fits &= fabs(u[i]) < WHOLE_MAX && fabs(v[i]) < WHOLE_MAX && fabs(away[i]) < WHOLE_MAX;
         reach += fabs(away[i]);
     }
     if (!fits) return false;
     plane->offset = (enf_doubled){0, 0};
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        enf_doubled one = multiply_doubles(a[j], b[k]), two = multiply_doubles(a[k], b[j]);
+        enf_doubled one = multiply_doubles(u[j], v[k]), two = multiply_doubles(u[k], v[j]);
         double both = fabs(one.high) + fabs(two.high);
         size = both > size ? both : size;
         plane->normal[i] = subtract(one, two);

@@ -32,6 +32,8 @@ typedef struct flipper {
     const double *points;
     edge_list wanted;
     size_t corner_capacity, facet_capacity, facet_corner_capacity, side_capacity;
+    int32_t *turned; ///< facets that have been given other corners
+    size_t turned_count, turned_capacity;
     int32_t flips;
 } flipper;
 
@@ -188,7 +190,8 @@ static bool reserve(flipper *f) {
     return enf_array_reserve(tets->corners, f->corner_capacity, count) &&
            enf_array_reserve(tets->facets, f->facet_capacity, count) &&
            enf_array_reserve(tets->facet_corners, f->facet_corner_capacity, facets) &&
-           enf_array_reserve(tets->facet_sides, f->side_capacity, facets);
+           enf_array_reserve(tets->facet_sides, f->side_capacity, facets) &&
+           enf_array_reserve(f->turned, f->turned_capacity, f->turned_count + FACETS);
 }
 
 /// Puts the new tetrahedra in the place of the old ones; numbers of the latter, and of facets that go, are
@@ -208,7 +211,7 @@ static bool replace(flipper *f, const patch *p) {
             if (facet < 0) {
                 facet = within.count > 0 ? within.facet[--within.count] : tets->facet_count++;
                 memcpy(tets->facet_corners[facet], face, sizeof face);
-                known.facet[known.count++] = facet;
+                known.facet[known.count++] = f->turned[f->turned_count++] = facet;
             }
             tets->facet_sides[facet][side] = t;
             tets->facets[t][k] = facet;
@@ -377,7 +380,8 @@ enf_status enf_tet_mesh_flip(enf_tet_mesh *tets, const enf_mesh *mesh, int32_t *
     free_edges(&f.wanted);
     free(tiled);
     *flips = f.flips;
-    if (good && f.flips > 0) good = enf_tet_mesh_list(tets);
+    good = good && enf_tet_mesh_list(tets, f.turned, f.turned_count);
+    free(f.turned);
     if (good) return ENF_OK;
     enf_tet_mesh_free(tets);
     return enf_fail_memory(error, "the tetrahedra's faces");

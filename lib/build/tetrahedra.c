@@ -45,7 +45,8 @@ static int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
     const uint32_t count = mesh->slot_begin[face[0] + 1] - mesh->slot_begin[face[0]];
     uint32_t at = (uint32_t)((uint64_t)hash_edge(face[1], face[2]) * count >> 32);
     for (int32_t facet; (facet = slots[at]) >= 0; at = at + 1 < count ? at + 1 : 0) {
-        if (memcmp(mesh->facet_corners[facet], face, sizeof *mesh->facet_corners) == 0) break;
+        const int32_t *corner = mesh->facet_corners[facet];
+        if (corner[1] == face[1] && corner[2] == face[2] && corner[0] == face[0]) break;
     }
     return &slots[at];
 }
@@ -79,7 +80,8 @@ static enf_status make_slots(enf_tet_mesh *mesh, enf_error *error) {
     return ENF_OK;
 }
 
-bool enf_tet_mesh_list(enf_tet_mesh *mesh) {
+/// All facets anew, with twice as many slots. False without memory.
+static bool list_all(enf_tet_mesh *mesh) {
     uint32_t *begin = mesh->slot_begin;
     memset(begin, 0, ((size_t)mesh->point_count + 1) * sizeof *begin);
     for (int32_t f = 0; f < mesh->facet_count; f++) begin[mesh->facet_corners[f][0] + 1] += 2;
@@ -90,6 +92,23 @@ bool enf_tet_mesh_list(enf_tet_mesh *mesh) {
     if (!mesh->slots) return false;
     memset(mesh->slots, 0xff, slots * sizeof *mesh->slots); // -1
     for (int32_t f = 0; f < mesh->facet_count; f++) *slot_of(mesh, mesh->facet_corners[f]) = f;
+    return true;
+}
+
+/// Has a lowest corner a free slot left?
+static bool has_free_slot(const enf_tet_mesh *mesh, int32_t lowest) {
+    for (uint32_t i = mesh->slot_begin[lowest + 1]; i-- > mesh->slot_begin[lowest];) {
+        if (mesh->slots[i] < 0) return true;
+    }
+    return false;
+}
+
+bool enf_tet_mesh_list(enf_tet_mesh *mesh, const int32_t *facets, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const int32_t *corner = mesh->facet_corners[facets[i]];
+        *slot_of(mesh, corner) = facets[i];
+        if (!has_free_slot(mesh, corner[0])) return list_all(mesh);
+    }
     return true;
 }
 

@@ -33,8 +33,9 @@ enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t c
 /// behind) on which the fourth corner of a positively oriented tetrahedron lies.
 int enf_tetrahedron_face(const int32_t tetrahedron[4], int opposite, int32_t face[3]);
 
-/// Lists all facets by their corners anew, after some have been given other corners. False without memory.
-bool enf_tet_mesh_list(enf_tet_mesh *mesh);
+/// Lists facets by their corners that have been given others. (Where the old ones led, they are not found any
+/// more.) False without memory.
+bool enf_tet_mesh_list(enf_tet_mesh *mesh, const int32_t *facets, size_t count);
 
 /// The facet with these three corners, in any order, or -1.
 int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c);

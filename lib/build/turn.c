@@ -221,6 +221,7 @@ typedef struct direction {
 
 static bool is_parallel(const double a[3], const double b[3]) {
     double n[3];
+    if (fabs(dot(a, b)) < 0.99) return false; // most pairs: far from it
     cross(a, b, n);
     return dot(n, n) <= same_direction * same_direction;
 }
