@@ -9,6 +9,7 @@
 #include "build/arrangement.h"
 #include "build/connect.h"
 #include "build/delaunay.h"
+#include "build/flip.h"
 #include "build/hairline.h"
 #include "build/split.h"
 #include "build/tet_order.h"
@@ -103,7 +104,11 @@ static enf_status tetrahedralize(kitchen *k) {
     }
     status = enf_tet_mesh_pair(&k->tets, made.corners, made.count, (int32_t)mesh->point_count, k->error);
     if (status != ENF_OK) return status;
-    say(k, "%d tetrahedra by %s", (int)k->tets.count, tetrahedralizers[chosen].name);
+    int32_t flips = 0;
+    if (!k->options->plain_cells) status = enf_tet_mesh_flip(&k->tets, mesh, &flips, k->error);
+    if (status != ENF_OK) return status;
+    say(k, "%d tetrahedra by %s, %d flips to edges of polygons", (int)k->tets.count,
+        tetrahedralizers[chosen].name, (int)flips);
     enf_memory_count_tetrahedra(counts, mesh, &k->tets);
     k->build->peak_bytes_predicted = enf_memory_estimate(counts);
     return enf_memory_admit(counts, allowed, k->error);

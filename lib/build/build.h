@@ -37,7 +37,8 @@ typedef struct enf_build_options {
     enf_heuristic heuristic;
     enf_stop stop;
     enf_keep keep;
-    bool plain_cells;      ///< leave fine cells as the cuts make them; otherwise convex ones are joined
+    bool plain_cells; ///< Delaunay tetrahedra, and fine cells as the cuts make them; otherwise flip.h first,
+                      ///< and convex ones are joined
     bool measure_resident; ///< stages report resident_bytes, which costs a look into a system file each
     int threads;
     uint64_t memory;        ///< bytes that the process may have at most; 0: what the system allows

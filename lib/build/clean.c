@@ -235,8 +235,8 @@ static enf_status settle_frame(cleaner *c, enf_site *sites, size_t *count, doubl
         take_points(sites, distinct, *count);
         *count = unite(c, sites, *count, scratch);
         give_points(sites, distinct, *count);
+        enf_frame_choose(&c->mesh->frame, distinct, *count, &rings);
     }
-    enf_frame_choose(&c->mesh->frame, distinct, *count, &rings);
     return ENF_OK;
 }
 

@@ -5,7 +5,6 @@
 #define ENF_BUILD_DOUBLED_PLANE_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
 /// The number high + low, |low| no more than half a unit in the last place of high.
 typedef struct enf_doubled {
@@ -19,10 +18,10 @@ typedef struct enf_doubled_plane {
     double reach; ///< offset <= size * reach
 } enf_doubled_plane;
 
-/// The plane through p, p + u and p + v; all whole numbers. False if a difference has more bits than a
-/// double.
-bool enf_doubled_plane_set(enf_doubled_plane *plane, const double p[3], const int64_t u[3],
-                           const int64_t v[3], const double origin[3]);
+/// The plane through p, p + u and p + v; all whole numbers, u and v rounded to doubles. False if such a
+/// difference, or that to the origin, may have been rounded.
+bool enf_doubled_plane_set(enf_doubled_plane *plane, const double p[3], const double u[3], const double v[3],
+                           const double origin[3]);
 
 /// Sign of the determinant of all coefficients, or 0 if that is not certain. The origin is a point of the
 /// first plane (whose offset is not looked at).

@@ -241,43 +241,11 @@ static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *te
     }
 }
 
-enum { FACETED_CORNERS_MAX = 16 }; ///< polygons with more are flooded at once
-
-/// The facets that tile the polygon, where the triangulation carries it already: facets do not overlap, so
-/// there is at most one way to triangulate it with them, and the facet at each edge is found by trying all
-/// apexes. Returns their number (corners - 2), or 0 if they do not tile it.
-static int tiling_facets(const enf_tet_mesh *tets, const int32_t *corner, int corners, int32_t *facets) {
-    int count = 0;
-    if (corners > FACETED_CORNERS_MAX) return 0;
-    struct {
-        int first, last;
-    } stack[FACETED_CORNERS_MAX] = {{0, corners - 1}}; // chains of corners still to be closed by a facet
-    for (int depth = 1; depth > 0;) {
-        int first = stack[--depth].first, last = stack[depth].last, apex = first + 1;
-        int32_t facet = -1;
-        for (; apex < last; apex++) {
-            facet = enf_tet_mesh_facet(tets, corner[first], corner[apex], corner[last]);
-            if (facet >= 0) break;
-        }
-        if (facet < 0) return 0;
-        facets[count++] = facet;
-        if (apex > first + 1) {
-            stack[depth].first = first;
-            stack[depth++].last = apex;
-        }
-        if (last > apex + 1) {
-            stack[depth].first = apex;
-            stack[depth++].last = last;
-        }
-    }
-    return count;
-}
-
 static void take_polygon(flooder *w, flood_block *block, const flood *all, int32_t polygon) {
     const enf_arrangement *arrangement = all->arrangement;
-    int32_t facets[FACETED_CORNERS_MAX], plane = arrangement->polygon_plane[polygon];
+    int32_t facets[ENF_TILING_CORNERS_MAX], plane = arrangement->polygon_plane[polygon];
     enf_polygon_lines_take(&w->lines, arrangement, polygon, 0);
-    int tiling = tiling_facets(&arrangement->tets, w->lines.corners, w->lines.count, facets);
+    int tiling = enf_tet_mesh_tiling(&arrangement->tets, w->lines.corners, w->lines.count, facets);
     for (int i = 0; i < tiling; i++) add_hit(w, block, facets[i], 0); // it crosses nothing
     if (tiling) return;
     enf_polygon_lines_take(&w->lines, arrangement, polygon, UINT32_MAX);

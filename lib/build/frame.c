@@ -46,9 +46,19 @@ static void find_bounds(const double *points, size_t count, double low[3], doubl
     }
     for (size_t i = 0; i < count; i++)
         for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], points[3 * i + a]);
-            high[a] = fmax(high[a], points[3 * i + a]);
+            double x = points[3 * i + a];
+            low[a] = x < low[a] ? x : low[a];
+            high[a] = x > high[a] ? x : high[a];
         }
+}
+
+/// x * 2^exponent.
+static inline double scaled(double x, int exponent) {
+    if (exponent < -1000 || exponent > 1000) return ldexp(x, exponent);
+    uint64_t bits = (uint64_t)(exponent + 1023) << 52;
+    double factor;
+    memcpy(&factor, &bits, sizeof factor);
+    return x * factor;
 }
 
 static void find_keys(const double *points, size_t count, const double low[3], const double high[3],
@@ -63,10 +73,11 @@ static void find_keys(const double *points, size_t count, const double low[3], c
         enf_int128 odd[3] = {0}, even[3] = {0};
         for (size_t i = 0; i < count; i++) {
             // Truncated to 30 bits of the largest one: cubes of 2^31 points fit 128 bits.
-            enf_int128 u = (int64_t)ldexp(centred(points[3 * i + a], low[a], high[a]), 30 - exponent);
-            enf_int128 size = u < 0 ? -u : u;
-            odd[0] += u, odd[1] += u * u * u, odd[2] += u * size;
-            even[0] += size, even[1] += u * u, even[2] += u * u * size;
+            int64_t u = (int64_t)scaled(centred(points[3 * i + a], low[a], high[a]), 30 - exponent);
+            int64_t size = u < 0 ? -u : u, square = u * u;
+            enf_int128 cube = (enf_int128)square * size;
+            odd[0] += u, odd[1] += u < 0 ? -cube : cube, odd[2] += u < 0 ? -square : square;
+            even[0] += size, even[1] += square, even[2] += cube;
         }
         keys[a] = (axis_key){.extent = high[a] - low[a]};
         memcpy(keys[a].even, even, sizeof even);

@@ -24,15 +24,15 @@ static int axis_of(int32_t code) {
     return -1 - code;
 }
 
-/// The vectors from the first to the other two of a plane's three points.
-static void plane_spans(const enf_geometry *geometry, int32_t plane, double u[3], double v[3]) {
+/// The vectors from the first to the other two of a plane's three points; or along the axis of the edge's.
+static inline void plane_spans(const enf_geometry *geometry, int32_t plane, double u[3], double v[3]) {
     const int32_t *defined = geometry->planes[plane];
     const double *p = geometry->points + 3 * (size_t)defined[0],
-                 *q = geometry->points + 3 * (size_t)defined[1],
-                 *r = geometry->points + 3 * (size_t)defined[2];
+                 *q = geometry->points + 3 * (size_t)defined[1];
     for (int i = 0; i < 3; i++) {
         u[i] = q[i] - p[i];
-        v[i] = r[i] - p[i];
+        v[i] = defined[2] < 0 ? i == axis_of(defined[2])
+                              : geometry->points[3 * (size_t)defined[2] + (size_t)i] - p[i];
     }
 }
 
@@ -339,8 +339,8 @@ static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int
 /// A plane with coefficients in pairs, as seen from a point of another. False if they do not fit.
 static bool doubled_plane_of(const enf_geometry *geometry, int32_t plane, const double *origin,
                              enf_doubled_plane *out) {
-    int64_t u[3], v[3];
-    whole_spans(geometry, plane, u, v);
+    double u[3], v[3];
+    plane_spans(geometry, plane, u, v);
     return enf_doubled_plane_set(out, geometry->points + 3 * (size_t)geometry->planes[plane][0], u, v,
                                  origin);
 }

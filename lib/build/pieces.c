@@ -56,6 +56,21 @@ static int compare_keys(const void *left, const void *right, void *pieces) {
     return order ? order : (a->piece > b->piece) - (a->piece < b->piece);
 }
 
+enum { INSERT_MAX = 24 }; ///< keys that are sorted by insertion
+
+static void sort_keys(const enf_pieces *pieces, sort_key *keys, size_t count) {
+    if (count > INSERT_MAX) {
+        qsort_r(keys, count, sizeof *keys, compare_keys, (void *)pieces);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        sort_key moved = keys[i];
+        size_t k = i;
+        for (; k > 0 && compare_keys(&moved, &keys[k - 1], (void *)pieces) < 0; k--) keys[k] = keys[k - 1];
+        keys[k] = moved;
+    }
+}
+
 /// The keys dealt out by their first corner: what is left to sort is a few at a time. False without memory.
 static bool deal_keys(const enf_pieces *pieces, sort_key *keys) {
     int32_t most = 0;
@@ -86,7 +101,7 @@ enf_status enf_pieces_sort(const enf_pieces *pieces, int32_t *order, int32_t *co
     }
     for (size_t begin = 0, end; begin < pieces->count; begin = end) {
         for (end = begin + 1; end < pieces->count && keys[end].first[0] == keys[begin].first[0];) end++;
-        if (end - begin > 1) qsort_r(keys + begin, end - begin, sizeof *keys, compare_keys, (void *)pieces);
+        sort_keys(pieces, keys + begin, end - begin);
     }
     *kept = 0;
     for (size_t i = 0; i < pieces->count; i++) {

@@ -42,15 +42,24 @@ const char *enf_turn_outcome_name(enf_turn_outcome outcome) {
     return names[outcome];
 }
 
+/// The frame of the points as they are now; see enf_turn.frame.
+static void choose_frame(enf_frame *frame, const enf_turn *turn, const double *points, size_t count,
+                         const enf_frame_rings *rings) {
+    *frame = turn->frame;
+    if (!turn->is_framed || turn->outcome == ENF_TURN_FOUND) enf_frame_choose(frame, points, count, rings);
+    frame->is_turned = turn->outcome == ENF_TURN_FOUND;
+    memcpy(frame->turn, turn->rows, sizeof turn->rows);
+}
+
 /// Along the canonical axes, because clusters depend on where they begin.
 static enf_status flatten(enf_mesh *mesh, double *points, size_t count, const enf_frame_rings *rings,
-                          double reach, bool turned, enf_error *error) {
-    enf_frame frame = {0};
+                          double reach, enf_error *error) {
+    enf_frame frame = mesh->frame;
     enf_flattening flattening;
-    enf_frame_choose(&frame, points, count, rings);
     frame.step = 1;
+    frame.is_turned = false;
     for (size_t i = 0; i < count; i++) enf_frame_to_grid(&frame, &points[3 * i], &points[3 * i]);
-    enf_status status = enf_flatten(points, count, rings, reach, turned, &flattening, error);
+    enf_status status = enf_flatten(points, count, rings, reach, mesh->frame.is_turned, &flattening, error);
     for (size_t i = 0; i < count; i++) enf_frame_to_world(&frame, &points[3 * i], &points[3 * i]);
     mesh->flattened = flattening.moved;
     mesh->lattices = 0;
@@ -64,12 +73,10 @@ enf_status enf_planes_recover(enf_mesh *mesh, double *points, size_t count, cons
     enf_turn turn;
     enf_status status = enf_turn_find(&turn, points, count, rings, reach, error);
     if (status != ENF_OK) return status;
-    bool turned = turn.outcome == ENF_TURN_FOUND;
     mesh->turn_outcome = turn.outcome;
     mesh->aligned = turn.aligned;
-    mesh->frame.is_turned = turned;
-    memcpy(mesh->frame.turn, turn.rows, sizeof turn.rows);
-    if (reach > 0) status = flatten(mesh, points, count, rings, reach, turned, error);
-    *changed = turned || mesh->flattened;
+    choose_frame(&mesh->frame, &turn, points, count, rings);
+    if (reach > 0) status = flatten(mesh, points, count, rings, reach, error);
+    *changed = mesh->frame.is_turned || mesh->flattened;
     return status;
 }

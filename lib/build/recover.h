@@ -12,8 +12,8 @@ void enf_tolerances_choose(enf_mesh *mesh, const enf_clean_options *options, con
                            size_t count);
 
 /// Turns the points and moves them to planes, in place, none by more than mesh->plane_tolerance (beside the
-/// turn). Sets mesh->frame's turn and what the mesh reports on recovery. *changed: the points are not what
-/// they were.
+/// turn). Sets what the mesh reports on recovery, and mesh->frame. *changed: the points are not what they
+/// were, and of the frame only the turn is still right.
 enf_status enf_planes_recover(enf_mesh *mesh, double *points, size_t count, const enf_frame_rings *rings,
                               bool *changed, enf_error *error);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The walk goes through any face that has the point behind it (Devillers, Pion and Teillaud, "Walking in a
-// triangulation", 2002); with exact predicates it always ends in a Delaunay triangulation.
+// triangulation", 2002); with exact predicates it always ends in a Delaunay triangulation. In one that has
+// been flipped (flip.h) it could lead round in circles: then all tetrahedra are asked.
 #include "build/spawn.h"
 
 #include "base/array.h"
@@ -32,6 +33,16 @@ static int32_t beyond(const enf_tet_mesh *tets, int32_t t, int k) {
     return sides[0] == t ? sides[1] : sides[0];
 }
 
+/// The same without a walk.
+static int32_t look_everywhere(const enf_complex *complex, const enf_tet_mesh *tets, const double point[3]) {
+    for (int32_t t = 0; t < tets->count; t++) {
+        int k = 0;
+        while (k < 4 && side_of_facet(complex, tets, t, k, point) >= 0) k++;
+        if (k == 4) return t;
+    }
+    return -1;
+}
+
 /// A tetrahedron that holds the point, or -1 outside the hull.
 static int32_t walk(const enf_complex *complex, const enf_tet_mesh *tets, const double point[3],
                     int32_t start) {
@@ -44,7 +55,8 @@ static int32_t walk(const enf_complex *complex, const enf_tet_mesh *tets, const 
         }
         if (exit < 0) return t;
         t = beyond(tets, t, exit);
-        if (t < 0 || step > 4 * (int64_t)tets->count) return -1;
+        if (t < 0) return -1;
+        if (step > 4 * (int64_t)tets->count) return look_everywhere(complex, tets, point);
     }
 }
 

@@ -26,9 +26,7 @@ static int order(int32_t *a, int32_t *b) {
     return turned;
 }
 
-/// The three corners other than `opposite`, ascending. Returns the side of their plane (1 in front, 0 behind)
-/// on which the fourth corner of a positively oriented tetrahedron lies.
-static int sorted_face(const int32_t tetrahedron[4], int opposite, int32_t face[3]) {
+int enf_tetrahedron_face(const int32_t tetrahedron[4], int opposite, int32_t face[3]) {
     int side = opposite & 1; // (1,2,3|0) and (0,1,3|2) are odd permutations, the other two even
     for (int k = 0; k < 3; k++) face[k] = tetrahedron[k + (k >= opposite)];
     side ^= order(&face[0], &face[1]);
@@ -47,7 +45,8 @@ static int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
     const uint32_t count = mesh->slot_begin[face[0] + 1] - mesh->slot_begin[face[0]];
     uint32_t at = (uint32_t)((uint64_t)hash_edge(face[1], face[2]) * count >> 32);
     for (int32_t facet; (facet = slots[at]) >= 0; at = at + 1 < count ? at + 1 : 0) {
-        if (mesh->facet_corners[facet][1] == face[1] && mesh->facet_corners[facet][2] == face[2]) break;
+        const int32_t *corner = mesh->facet_corners[facet];
+        if (corner[1] == face[1] && corner[2] == face[2] && corner[0] == face[0]) break;
     }
     return &slots[at];
 }
@@ -55,7 +54,7 @@ static int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
 int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c) {
     const int32_t corners[4] = {a, b, c, -1};
     int32_t face[3];
-    sorted_face(corners, 3, face);
+    enf_tetrahedron_face(corners, 3, face);
     return *slot_of(mesh, face);
 }
 
@@ -81,11 +80,43 @@ static enf_status make_slots(enf_tet_mesh *mesh, enf_error *error) {
     return ENF_OK;
 }
 
+/// All facets anew, with twice as many slots. False without memory.
+static bool list_all(enf_tet_mesh *mesh) {
+    uint32_t *begin = mesh->slot_begin;
+    memset(begin, 0, ((size_t)mesh->point_count + 1) * sizeof *begin);
+    for (int32_t f = 0; f < mesh->facet_count; f++) begin[mesh->facet_corners[f][0] + 1] += 2;
+    for (int32_t i = 0; i < mesh->point_count; i++) begin[i + 1] += begin[i] + 1;
+    const size_t slots = begin[mesh->point_count];
+    free(mesh->slots);
+    mesh->slots = enf_array_new(slots, sizeof *mesh->slots);
+    if (!mesh->slots) return false;
+    memset(mesh->slots, 0xff, slots * sizeof *mesh->slots); // -1
+    for (int32_t f = 0; f < mesh->facet_count; f++) *slot_of(mesh, mesh->facet_corners[f]) = f;
+    return true;
+}
+
+/// Has a lowest corner a free slot left?
+static bool has_free_slot(const enf_tet_mesh *mesh, int32_t lowest) {
+    for (uint32_t i = mesh->slot_begin[lowest + 1]; i-- > mesh->slot_begin[lowest];) {
+        if (mesh->slots[i] < 0) return true;
+    }
+    return false;
+}
+
+bool enf_tet_mesh_list(enf_tet_mesh *mesh, const int32_t *facets, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const int32_t *corner = mesh->facet_corners[facets[i]];
+        *slot_of(mesh, corner) = facets[i];
+        if (!has_free_slot(mesh, corner[0])) return list_all(mesh);
+    }
+    return true;
+}
+
 static enf_status pair_faces(enf_tet_mesh *mesh, enf_error *error) {
     for (int32_t t = 0; t < mesh->count; t++) {
         for (int k = 0; k < 4; k++) {
             int32_t face[3];
-            int side = sorted_face(mesh->corners[t], k, face);
+            int side = enf_tetrahedron_face(mesh->corners[t], k, face);
             int32_t *slot = slot_of(mesh, face), facet = *slot;
             if (facet < 0) {
                 facet = *slot = mesh->facet_count++;
@@ -149,4 +180,32 @@ enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t c
     trimmed = realloc(mesh->facet_sides, (size_t)mesh->facet_count * sizeof *mesh->facet_sides);
     if (trimmed) mesh->facet_sides = trimmed;
     return ENF_OK;
+}
+
+int enf_tet_mesh_tiling(const enf_tet_mesh *tets, const int32_t *corner, int64_t corners, int32_t *facets) {
+    int count = 0;
+    if (corners > ENF_TILING_CORNERS_MAX) return 0;
+    struct {
+        int first, last;
+    } stack[ENF_TILING_CORNERS_MAX] = {
+        {0, (int)corners - 1}}; // chains of corners still to be closed by a facet
+    for (int depth = 1; depth > 0;) {
+        int first = stack[--depth].first, last = stack[depth].last, apex = first + 1;
+        int32_t facet = -1;
+        for (; apex < last; apex++) {
+            facet = enf_tet_mesh_facet(tets, corner[first], corner[apex], corner[last]);
+            if (facet >= 0) break;
+        }
+        if (facet < 0) return 0;
+        facets[count++] = facet;
+        if (apex > first + 1) {
+            stack[depth].first = first;
+            stack[depth++].last = apex;
+        }
+        if (last > apex + 1) {
+            stack[depth].first = apex;
+            stack[depth++].last = last;
+        }
+    }
+    return count;
 }

@@ -29,7 +29,22 @@ void enf_tet_mesh_free(enf_tet_mesh *mesh);
 enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t count, int32_t point_count,
                              enf_error *error);
 
+/// The three corners other than number `opposite`, ascending. Returns the side of their plane (1 in front, 0
+/// behind) on which the fourth corner of a positively oriented tetrahedron lies.
+int enf_tetrahedron_face(const int32_t tetrahedron[4], int opposite, int32_t face[3]);
+
+/// Lists facets by their corners that have been given others. (Where the old ones led, they are not found any
+/// more.) False without memory.
+bool enf_tet_mesh_list(enf_tet_mesh *mesh, const int32_t *facets, size_t count);
+
 /// The facet with these three corners, in any order, or -1.
 int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c);
+
+enum { ENF_TILING_CORNERS_MAX = 16 }; ///< of polygons with more it is not asked
+
+/// The facets that tile a polygon, where the triangulation carries it already: facets do not overlap, so
+/// there is at most one way to triangulate it with them, and the facet at each edge is found by trying all
+/// apexes. Returns their number (corners - 2), or 0 if they do not tile it.
+int enf_tet_mesh_tiling(const enf_tet_mesh *mesh, const int32_t *corner, int64_t corners, int32_t *facets);
 
 #endif

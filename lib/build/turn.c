@@ -188,8 +188,8 @@ static void measure_extent(const seeker *s, int32_t piece, double extent[3]) {
         double d[3] = {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
         for (int a = 0; a < 3; a++) {
             double u = dot(s->axes[a], d);
-            low[a] = fmin(low[a], u);
-            high[a] = fmax(high[a], u);
+            low[a] = u < low[a] ? u : low[a];
+            high[a] = u > high[a] ? u : high[a];
         }
     }
     for (int a = 0; a < 3; a++) extent[a] = high[a] - low[a];
@@ -221,6 +221,7 @@ typedef struct direction {
 
 static bool is_parallel(const double a[3], const double b[3]) {
     double n[3];
+    if (fabs(dot(a, b)) < 0.99) return false; // most pairs: far from it
     cross(a, b, n);
     return dot(n, n) <= same_direction * same_direction;
 }
@@ -407,8 +408,9 @@ enf_status enf_turn_find(enf_turn *turn, double *points, size_t count, const enf
     if (!(reach > 0) || count < 3 || rings->polygon_count == 0) return ENF_OK;
     turn->outcome = ENF_TURN_ROUND;
     if (enf_points_are_round(points, count, enf_power_of_two_above(32 * reach))) return ENF_OK;
-    enf_frame frame = {0};
-    enf_frame_choose(&frame, points, count, rings);
+    turn->is_framed = true;
+    enf_frame_choose(&turn->frame, points, count, rings);
+    const enf_frame frame = turn->frame;
     seeker s = {.count = count, .reach = reach / frame.step};
     int32_t *rank = enf_array_new(count, sizeof *rank);
     enf_status status =

@@ -11,6 +11,8 @@ typedef struct enf_turn {
     double rows[3][3];     ///< a rotation (found, or the identity): turned[a] = rows[a] . world
     double aligned;        ///< share of the area that lies square to an axis, within the tolerance
     double aligned_before; ///< the same without the turn; both 0 where nobody looked
+    bool is_framed;        ///< the frame has been chosen
+    enf_frame frame;       ///< of the points as they were given
 } enf_turn;
 
 /// `points`, `rings`: as for enf_frame_choose; if a turn is found, the points are turned by it. `reach`: how

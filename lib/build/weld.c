@@ -16,10 +16,71 @@ static int compare_sites(const void *left, const void *right) {
     return (a->id > b->id) - (a->id < b->id);
 }
 
+/// A number that is larger for larger doubles; 0 and -0 are the same.
+static uint64_t rising(double x) {
+    uint64_t bits;
+    double one = x + 0.0;
+    memcpy(&bits, &one, sizeof bits);
+    return bits >> 63 ? ~bits : bits | UINT64_C(1) << 63;
+}
+
+enum { DIGIT_BITS = 11, DIGITS = 6, FEW = 256 }; ///< of a rising number; sites that are sorted by comparing
+
+typedef struct ranked {
+    uint64_t key;
+    size_t place;
+} ranked;
+
+/// One pass of a radix sort by one digit; false if all have the same one.
+static bool deal_by_digit(const ranked *from, ranked *to, size_t count, int digit) {
+    size_t next[1 << DIGIT_BITS] = {0}, sum = 0;
+    const int shift = DIGIT_BITS * digit;
+    const uint64_t mask = (1 << DIGIT_BITS) - 1;
+    for (size_t i = 0; i < count; i++) next[from[i].key >> shift & mask]++;
+    if (next[from[0].key >> shift & mask] == count) return false;
+    for (size_t i = 0; i <= mask; i++) {
+        size_t here = next[i];
+        next[i] = sum;
+        sum += here;
+    }
+    for (size_t i = 0; i < count; i++) to[next[from[i].key >> shift & mask]++] = from[i];
+    return true;
+}
+
+/// Sorts by the first coordinate alone. False, with the sites as they were, without memory.
+static bool sort_by_first(enf_site *sites, size_t count) {
+    ranked *now = enf_array_new(count, sizeof *now), *then = enf_array_new(count, sizeof *then);
+    enf_site *given = enf_array_new(count, sizeof *given);
+    bool good = now && then && given;
+    if (good) {
+        memcpy(given, sites, count * sizeof *given);
+        for (size_t i = 0; i < count; i++) now[i] = (ranked){rising(given[i].at[0]), i};
+        for (int digit = 0; digit < DIGITS; digit++) {
+            if (!deal_by_digit(now, then, count, digit)) continue;
+            ranked *swap = now;
+            now = then;
+            then = swap;
+        }
+        for (size_t i = 0; i < count; i++) sites[i] = given[now[i].place];
+    }
+    free(now);
+    free(then);
+    free(given);
+    return good;
+}
+
 void enf_sites_sort(enf_site *sites, size_t count) {
     size_t ordered = 1; // welding and flattening leave most orders as they were
     while (ordered < count && compare_sites(&sites[ordered - 1], &sites[ordered]) <= 0) ordered++;
-    if (ordered < count) qsort(sites, count, sizeof *sites, compare_sites);
+    if (ordered >= count) return;
+    if (count <= FEW || !sort_by_first(sites, count)) {
+        qsort(sites, count, sizeof *sites, compare_sites);
+        return;
+    }
+    for (size_t begin = 0, end; begin < count; begin = end) { // equal ones by the rest
+        for (end = begin + 1; end < count && sites[end].at[0] == sites[begin].at[0];) end++;
+        if (end - begin > 1) qsort(sites + begin, end - begin, sizeof *sites, compare_sites);
+    }
 }
 
 static bool same_place(const enf_site *a, const enf_site *b) {
