@@ -18,8 +18,8 @@
 /// For what such functions call, as clones are made of them alone.
 #define ENF_PART_OF_WIDE static inline __attribute__((always_inline))
 
-#pragma GCC diagnostic ignored \
-    "-Wpsabi" // how vectors are passed does not matter: all that takes them is inlined
+// How vectors are passed does not matter: all that takes them is inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
 
 typedef double enf_four __attribute__((vector_size(32)));
 typedef int64_t enf_four_mask __attribute__((vector_size(32))); ///< -1: yes, 0: no, as comparisons make them
