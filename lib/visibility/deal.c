@@ -160,7 +160,8 @@ void enf_deal_in(enf_shop *shop) {
             asks = false;
             continue;
         }
-        if (shop->closed && shop->outbox.count == 0 && enf_shop_wait(shop, 0)) break;
+        bool idle = enf_shop_wait(shop, 0); // it lets go of the lock: only then is the outbox final
+        if (idle && shop->closed && shop->outbox.count == 0) break;
         rest(shop);
     }
     pthread_mutex_unlock(&shop->lock);
