@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Doors are written behind a version number that is odd meanwhile (a sequence lock): a reader that sees it
+// odd, or changed, reads again. Who reads a new number of the data sees the version change that came before
+// it, because the data are released and acquired one by one: H.-J. Boehm, "Can seqlocks get along with
+// programming language memory models?", MSPC 2012. (Fences would do, too, but thread sanitizers do not know
+// them.)
+#include "run/instance.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct door {
+    _Atomic uint32_t version, state;
+    _Atomic double plane[4];
+} door;
+
+typedef struct transform {
+    int32_t to;
+    bool used;
+    double matrix[12];
+} transform;
+
+struct enf_instance {
+    const enf_file_view *view;
+    door *doors;            ///< per pair of portals
+    transform **transforms; ///< per portal; null: never had one. Null if none ever had
+};
+
+enf_status enf_instance_create(enf_instance **out, const enf_world *world,
+                               const enf_instance_options *options, enf_error *error) {
+    (void)options;
+    *out = NULL;
+    const enf_file_view *view = enf_world_file(world);
+    enf_instance *instance = calloc(1, sizeof *instance);
+    door *doors = calloc((size_t)view->portal_count / 2 + 1, sizeof *doors);
+    if (!instance || !doors) {
+        free(instance);
+        free(doors);
+        return enf_fail_memory(error, "an instance");
+    }
+    *instance = (enf_instance){.view = view, .doors = doors};
+    *out = instance;
+    return ENF_OK;
+}
+
+void enf_instance_free(enf_instance *instance) {
+    if (!instance) return;
+    for (int32_t i = 0; instance->transforms && i < instance->view->portal_count; i++)
+        free(instance->transforms[i]);
+    free(instance->transforms);
+    free(instance->doors);
+    free(instance);
+}
+
+static bool is_finite(const double *numbers, int count) {
+    for (int i = 0; i < count; i++)
+        if (!isfinite(numbers[i])) return false;
+    return true;
+}
+
+static enf_status check_portal(const enf_instance *instance, int32_t portal, enf_error *error) {
+    if (portal >= 0 && portal < instance->view->portal_count) return ENF_OK;
+    return enf_fail(error, ENF_BAD_USAGE, "portal %ld: the world has portals 0 to %ld", (long)portal,
+                    (long)instance->view->portal_count - 1);
+}
+
+enf_status enf_instance_set_door(enf_instance *instance, int32_t portal, const enf_door *set,
+                                 enf_error *error) {
+    enf_status status = check_portal(instance, portal, error);
+    if (status) return status;
+    const double *plane = set->plane;
+    bool partly = set->state == ENF_DOOR_PARTLY;
+    if ((unsigned)set->state > ENF_DOOR_PARTLY)
+        return enf_fail(error, ENF_BAD_USAGE, "a door's state is open, closed or partly open");
+    if (partly && (!is_finite(plane, 4) || (plane[0] == 0 && plane[1] == 0 && plane[2] == 0)))
+        return enf_fail(error, ENF_BAD_USAGE, "a door that is partly open needs a plane with a direction");
+    door *door = &instance->doors[portal / 2];
+    uint32_t version = atomic_load_explicit(&door->version, memory_order_relaxed);
+    atomic_store_explicit(&door->version, version + 1, memory_order_relaxed);
+    atomic_store_explicit(&door->state, (uint32_t)set->state, memory_order_release);
+    for (int i = 0; i < 4; i++)
+        atomic_store_explicit(&door->plane[i], partly ? plane[i] : 0, memory_order_release);
+    atomic_store_explicit(&door->version, version + 2, memory_order_release);
+    return ENF_OK;
+}
+
+static enf_door read_door(const door *door) {
+    enf_door read = {0};
+    for (;;) {
+        uint32_t version = atomic_load_explicit(&door->version, memory_order_acquire);
+        read.state = (enf_door_state)atomic_load_explicit(&door->state, memory_order_acquire);
+        for (int i = 0; i < 4; i++)
+            read.plane[i] = atomic_load_explicit(&door->plane[i], memory_order_acquire);
+        uint32_t after = atomic_load_explicit(&door->version, memory_order_relaxed);
+        if (version % 2 == 0 && version == after) return read;
+    }
+}
+
+enf_door enf_instance_get_door(const enf_instance *instance, int32_t portal) {
+    if (check_portal(instance, portal, NULL)) return (enf_door){0};
+    return read_door(&instance->doors[portal / 2]);
+}
+
+/// That of the linear part.
+static double determinant(const double m[12]) {
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+           m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, int32_t to,
+                                      const double matrix[12], enf_error *error) {
+    enf_status status = check_portal(instance, portal, error);
+    if (status) return status;
+    if (!matrix) {
+        if (instance->transforms && instance->transforms[portal]) instance->transforms[portal]->used = false;
+        return ENF_OK;
+    }
+    if (to < 0 || to >= instance->view->cell_count)
+        return enf_fail(error, ENF_BAD_USAGE, "cell %ld: the world has cells 0 to %ld", (long)to,
+                        (long)instance->view->cell_count - 1);
+    double volume = is_finite(matrix, 12) ? determinant(matrix) : 0;
+    if (volume == 0 || !isfinite(volume))
+        return enf_fail(error, ENF_BAD_USAGE, "a transform must be finite and have an inverse");
+    if (!instance->transforms)
+        instance->transforms = calloc((size_t)instance->view->portal_count, sizeof *instance->transforms);
+    if (!instance->transforms) return enf_fail_memory(error, "a transform");
+    transform **place = &instance->transforms[portal];
+    if (!*place) *place = malloc(sizeof **place);
+    if (!*place) return enf_fail_memory(error, "a transform");
+    (*place)->to = to;
+    (*place)->used = true;
+    memcpy((*place)->matrix, matrix, sizeof(*place)->matrix);
+    return ENF_OK;
+}
+
+enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal) {
+    enf_passage passage = {.to = view->portals[portal].to};
+    if (!instance) return passage;
+    const transform *transform = instance->transforms ? instance->transforms[portal] : NULL;
+    if (transform && transform->used) {
+        passage.to = transform->to;
+        passage.matrix = transform->matrix;
+    }
+    const door *door = &instance->doors[portal / 2];
+    if (atomic_load_explicit(&door->version, memory_order_relaxed) == 0) return passage; // never touched
+    enf_door now = read_door(door);
+    if (now.state == ENF_DOOR_CLOSED) passage.to = -1;
+    passage.cut = now.state == ENF_DOOR_PARTLY;
+    memcpy(passage.plane, now.plane, sizeof passage.plane);
+    return passage;
+}

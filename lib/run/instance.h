@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#ifndef ENF_RUN_INSTANCE_H
+#define ENF_RUN_INSTANCE_H
+
+#include "enfilade/instance.h"
+
+/// Where a portal leads at the moment.
+typedef struct enf_passage {
+    int32_t to;           ///< cell; -1: closed
+    bool cut;             ///< passable on the positive side of `plane` only
+    double plane[4];      ///< world, before the transform
+    const double *matrix; ///< 3 x 4, or null
+} enf_passage;
+
+/// The passage of a portal; without an instance all portals are open. The portal must be the world's.
+enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal);
+
+#endif
