@@ -12,6 +12,7 @@
 #include "build/exact_plane.h"
 
 #include <math.h>
+#include <string.h>
 
 #define U 0x1p-53
 
@@ -229,6 +230,7 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
     crossing->plane[0] = a;
     crossing->plane[1] = b;
     crossing->plane[2] = c;
+    crossing->position_error = 0;
     approximate(geometry, crossing);
     if (fabs(crossing->weight) > crossing->weight_error) {
         crossing->weight_sign = crossing->weight > 0 ? 1 : -1;
@@ -345,28 +347,88 @@ static bool doubled_plane_of(const enf_geometry *geometry, int32_t plane, const 
                                  origin);
 }
 
-/// The planes of a crossing, as seen from a point of the first, which is the origin.
-static bool doubled_planes_of(const enf_geometry *geometry, const enf_crossing *crossing,
-                              enf_doubled_plane out[3], const double **origin) {
-    *origin = geometry->points + 3 * (size_t)geometry->planes[crossing->plane[0]][0];
-    bool fit = true;
-    for (int k = 0; fit && k < 3; k++) fit = doubled_plane_of(geometry, crossing->plane[k], *origin, &out[k]);
-    return fit;
+/// Where the planes of a crossing meet, as seen from a point of the first, which is the origin. False if they
+/// do not fit.
+static bool make_meeting(const enf_geometry *geometry, const enf_crossing *crossing, const double *origin,
+                         enf_doubled_meeting *meeting) {
+    enf_doubled_plane plane[3];
+    for (int k = 0; k < 3; k++) {
+        if (!doubled_plane_of(geometry, crossing->plane[k], origin, &plane[k])) return false;
+    }
+    enf_doubled_planes_meet(plane, meeting);
+    return true;
+}
+
+static const double *origin_of(const enf_geometry *geometry, const enf_crossing *crossing) {
+    return geometry->points + 3 * (size_t)geometry->planes[crossing->plane[0]][0];
+}
+
+/// The same, kept or made in `room`; null if they do not fit.
+static const enf_doubled_meeting *meeting_of(const enf_geometry *geometry, const enf_crossing *crossing,
+                                             enf_doubled_meeting *room) {
+    const double *origin = origin_of(geometry, crossing);
+    enf_kept_filters *kept = geometry->kept;
+    if (!kept) return make_meeting(geometry, crossing, origin, room) ? room : NULL;
+    size_t slot = (size_t)(crossing - geometry->crossings) % ENF_MEETINGS_KEPT;
+    if (memcmp(kept->meeting_of[slot], crossing->plane, sizeof crossing->plane) != 0) {
+        memset(kept->meeting_of[slot], 0, sizeof kept->meeting_of[slot]);
+        if (!make_meeting(geometry, crossing, origin, &kept->meeting[slot])) return NULL;
+        memcpy(kept->meeting_of[slot], crossing->plane, sizeof crossing->plane);
+    }
+    return &kept->meeting[slot];
+}
+
+/// The crossing in rounded coordinates.
+static void find_position(const enf_geometry *geometry, const enf_crossing *crossing, double position[3]) {
+    // A quarter of a grid step is as good as the points themselves.
+    if (crossing->at_error + 0x1p53 * crossing->weight_error < 0.25 * fabs(crossing->weight)) {
+        for (int i = 0; i < 3; i++) position[i] = crossing->at[i] / crossing->weight;
+        return;
+    }
+    enf_doubled_meeting room;
+    const enf_doubled_meeting *meeting = meeting_of(geometry, crossing, &room);
+    if (meeting && enf_doubled_meeting_point(meeting, origin_of(geometry, crossing), position)) return;
+    enf_exact_plane plane[3];
+    for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &plane[k]);
+    enf_exact_planes_meet(plane, position);
+}
+
+/// Notes where the crossing is, if that is not known.
+static void locate(const enf_geometry *geometry, enf_crossing *crossing) {
+    if (crossing->position_error > 0) return;
+    find_position(geometry, crossing, crossing->position);
+    // Less than one step or one unit in the last place.
+    crossing->position_error = 1 + 0x1p-50 * largest(crossing->position);
+}
+
+/// The side by the crossing's position, 0 if it may be off by more than its distance from the plane.
+static int side_of_position(const enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
+                            const enf_plane_filter *filter) {
+    const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
+    double value = 0, magnitude = 0, reach = 0;
+    for (int i = 0; i < 3; i++) {
+        double difference = crossing->position[i] - p[i];
+        value += filter->normal[i] * difference;
+        magnitude += fabs(filter->normal[i] * difference);
+        reach += fabs(difference);
+    }
+    double error = 6 * U * magnitude + 1.001 * filter->normal_error * reach +
+                   3.01 * (filter->normal_size + filter->normal_error) * crossing->position_error;
+    if (fabs(value) > error) return value > 0 ? 1 : -1;
+    return 0;
 }
 
 /// The second tier: sign of the determinant of a crossing's planes and another, 0 if not certain.
 static int sign_in_pairs(const enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
-    enf_doubled_plane doubled[4];
-    const double *origin;
-    if (!doubled_planes_of(geometry, crossing, doubled, &origin) ||
-        !doubled_plane_of(geometry, plane, origin, &doubled[3])) {
-        return 0;
-    }
-    return enf_doubled_planes_sign(doubled);
+    enf_doubled_plane fourth;
+    enf_doubled_meeting room;
+    const enf_doubled_meeting *meeting = meeting_of(geometry, crossing, &room);
+    if (!meeting || !doubled_plane_of(geometry, plane, origin_of(geometry, crossing), &fourth)) return 0;
+    return enf_doubled_meeting_sign(meeting, &fourth);
 }
 
 /// Where rounding may hide the side.
-static int decide_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
+static int decide_crossing(enf_geometry *geometry, enf_crossing *crossing, int32_t plane,
                            const enf_plane_filter *filter, double value, double magnitude, double error) {
     if (error == 6 * U * magnitude &&
         magnitude < 0x1p53 * fmin(filter->normal_unit * crossing->at_unit,
@@ -374,11 +436,22 @@ static int decide_crossing(enf_geometry *geometry, const enf_crossing *crossing,
         geometry->decided[ENF_TIER_FILTER]++; // nothing was rounded: 0 is 0
         return value > 0 ? crossing->weight_sign : value < 0 ? -crossing->weight_sign : 0;
     }
-    if (shares_line(geometry, crossing, plane) || holds_edge(geometry, crossing, plane)) {
+    if (shares_line(geometry, crossing, plane)) {
         geometry->decided[ENF_TIER_FILTER]++;
         return 0;
     }
-    int sign = sign_in_pairs(geometry, crossing, plane);
+    bool located = crossing->position_error > 0;
+    int sign = located ? side_of_position(geometry, crossing, plane, filter) : 0;
+    bool on_edge = sign == 0 && holds_edge(geometry, crossing, plane);
+    if (!located && !on_edge) {
+        locate(geometry, crossing);
+        sign = side_of_position(geometry, crossing, plane, filter);
+    }
+    if (sign != 0 || on_edge) {
+        geometry->decided[ENF_TIER_FILTER]++;
+        return sign;
+    }
+    sign = sign_in_pairs(geometry, crossing, plane);
     if (sign != 0) {
         geometry->decided[ENF_TIER_PAIRS]++;
         return sign * crossing->weight_sign;
@@ -391,7 +464,7 @@ static int decide_crossing(enf_geometry *geometry, const enf_crossing *crossing,
     return enf_exact_planes_sign(exact) * crossing->weight_sign;
 }
 
-static inline int side_of_crossing(enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
+static inline int side_of_crossing(enf_geometry *geometry, enf_crossing *crossing, int32_t plane,
                                    const enf_plane_filter *filter) {
     if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
     double value = filter->offset * crossing->weight, magnitude = fabs(value), reach = 0;
@@ -415,7 +488,7 @@ static inline int side_of_crossing(enf_geometry *geometry, const enf_crossing *c
 int enf_geometry_side_by(enf_geometry *geometry, int32_t vertex, int32_t plane,
                          const enf_plane_filter *filter) {
     if (vertex < geometry->point_count) return side_of_point(geometry, vertex, plane, filter);
-    return side_of_crossing(geometry, enf_geometry_crossing(geometry, vertex), plane, filter);
+    return side_of_crossing(geometry, &geometry->crossings[vertex - geometry->point_count], plane, filter);
 }
 
 void enf_geometry_sides_by(enf_geometry *geometry, int32_t vertex, int32_t first_plane, uint32_t wanted,
@@ -494,24 +567,12 @@ bool enf_geometry_same_way(const enf_geometry *geometry, int32_t a, int32_t b) {
     return sign_a == sign_b;
 }
 
-void enf_geometry_position(const enf_geometry *geometry, int32_t vertex, double position[3]) {
-    if (vertex < geometry->point_count) {
-        for (int i = 0; i < 3; i++) position[i] = geometry->points[3 * (size_t)vertex + (size_t)i];
-        return;
+void enf_geometry_position(enf_geometry *geometry, int32_t vertex, double position[3]) {
+    const double *at = geometry->points + 3 * (size_t)vertex;
+    if (vertex >= geometry->point_count) {
+        enf_crossing *crossing = &geometry->crossings[vertex - geometry->point_count];
+        locate(geometry, crossing);
+        at = crossing->position;
     }
-    const enf_crossing *crossing = enf_geometry_crossing(geometry, vertex);
-    // A quarter of a grid step is as good as the points themselves.
-    if (crossing->at_error + 0x1p53 * crossing->weight_error < 0.25 * fabs(crossing->weight)) {
-        for (int i = 0; i < 3; i++) position[i] = crossing->at[i] / crossing->weight;
-        return;
-    }
-    enf_doubled_plane doubled[3];
-    const double *origin;
-    if (doubled_planes_of(geometry, crossing, doubled, &origin) &&
-        enf_doubled_planes_meet(doubled, origin, position)) {
-        return;
-    }
-    enf_exact_plane plane[3];
-    for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &plane[k]);
-    enf_exact_planes_meet(plane, position);
+    for (int i = 0; i < 3; i++) position[i] = at[i];
 }
