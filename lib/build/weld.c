@@ -69,6 +69,21 @@ static bool sort_by_first(enf_site *sites, size_t count) {
     return good;
 }
 
+enum { INSERT_MAX = 16 }; ///< sites that are sorted by insertion: at most places there are a few
+
+static void sort_few(enf_site *sites, size_t count) {
+    if (count > INSERT_MAX) {
+        qsort(sites, count, sizeof *sites, compare_sites);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        enf_site one = sites[i];
+        size_t k = i;
+        for (; k > 0 && compare_sites(&sites[k - 1], &one) > 0; k--) sites[k] = sites[k - 1];
+        sites[k] = one;
+    }
+}
+
 void enf_sites_sort(enf_site *sites, size_t count) {
     size_t ordered = 1; // welding and flattening leave most orders as they were
     while (ordered < count && compare_sites(&sites[ordered - 1], &sites[ordered]) <= 0) ordered++;
@@ -79,7 +94,7 @@ void enf_sites_sort(enf_site *sites, size_t count) {
     }
     for (size_t begin = 0, end; begin < count; begin = end) { // equal ones by the rest
         for (end = begin + 1; end < count && sites[end].at[0] == sites[begin].at[0];) end++;
-        if (end - begin > 1) qsort(sites + begin, end - begin, sizeof *sites, compare_sites);
+        sort_few(sites + begin, end - begin);
     }
 }
 
