@@ -166,22 +166,50 @@ static bool is_sure(double determinant, double largest) {
     return determinant * determinant > factor * factor * (square * square * largest);
 }
 
+/// Two numbers that are worked on at once.
+typedef double pair __attribute__((vector_size(16)));
+
+/// A number for each of the four corners.
+typedef struct four {
+    pair low, high;
+} four;
+
+/// A coordinate of the corners, as seen from the point.
+static inline four take_coordinate(const double *const corner[4], const double point[3], int axis) {
+    const pair origin = {point[axis], point[axis]};
+    return (four){(pair){corner[0][axis], corner[1][axis]} - origin,
+                  (pair){corner[2][axis], corner[3][axis]} - origin};
+}
+
+/// Those of the next corners.
+static inline four next(four a) {
+    return (four){{a.low[1], a.high[0]}, {a.high[1], a.low[0]}};
+}
+
+/// The filter: rows a, b, c, d, expanded along the last column. *largest receives the largest lift.
+static inline double sphere_determinant(const double *const corner[4], const double point[3],
+                                        double *largest) {
+    const four x = take_coordinate(corner, point, 0), y = take_coordinate(corner, point, 1),
+               z = take_coordinate(corner, point, 2), x1 = next(x), y1 = next(y), z1 = next(z);
+    const four lift = {x.low * x.low + y.low * y.low + z.low * z.low,
+                       x.high * x.high + y.high * y.high + z.high * z.high};
+    const four near = {x.low * y1.low - x1.low * y.low, x.high * y1.high - x1.high * y.high},
+               near1 = next(near);
+    const pair across = x.low * y.high - x.high * y.low;                          // of a and c, b and d
+    const four volume = {z.low * near1.low - z1.low * across + z.high * near.low, // abc, bcd, cda, dab
+                         z.high * near1.high + z1.high * across + z.low * near.high};
+    const four other = next(volume);
+    const pair low = lift.low * other.low, high = lift.high * other.high;
+    const double even = lift.low[0] > lift.high[0] ? lift.low[0] : lift.high[0],
+                 odd = lift.low[1] > lift.high[1] ? lift.low[1] : lift.high[1];
+    *largest = even > odd ? even : odd;
+    return (low[0] - low[1]) + (high[0] - high[1]);
+}
+
 int enf_points_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
                               const double point[3]) {
     const double *const corner[4] = {a, b, c, d};
-    double x[4], y[4], z[4], lift[4];
-    for (int i = 0; i < 4; i++) {
-        x[i] = corner[i][0] - point[0];
-        y[i] = corner[i][1] - point[1];
-        z[i] = corner[i][2] - point[2];
-        lift[i] = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-    }
-    double ab = x[0] * y[1] - x[1] * y[0], bc = x[1] * y[2] - x[2] * y[1], cd = x[2] * y[3] - x[3] * y[2],
-           da = x[3] * y[0] - x[0] * y[3], ac = x[0] * y[2] - x[2] * y[0], bd = x[1] * y[3] - x[3] * y[1];
-    double abc = z[0] * bc - z[1] * ac + z[2] * ab, bcd = z[1] * cd - z[2] * bd + z[3] * bc,
-           cda = z[2] * da + z[3] * ac + z[0] * cd, dab = z[3] * ab + z[0] * bd + z[1] * da;
-    double determinant = (lift[0] * bcd - lift[1] * cda) + (lift[2] * dab - lift[3] * abc);
-    double low = lift[0] > lift[1] ? lift[0] : lift[1], high = lift[2] > lift[3] ? lift[2] : lift[3];
-    if (is_sure(determinant, low > high ? low : high)) return determinant > 0 ? 1 : -1;
+    double largest, determinant = sphere_determinant(corner, point, &largest);
+    if (is_sure(determinant, largest)) return determinant > 0 ? 1 : -1;
     return side_of_sphere_exactly(corner, point);
 }
