@@ -7,9 +7,6 @@
 
 #include <math.h>
 
-/// Whatever the points, a determinant is not off by more: its magnitude below is at most 6 * 2^162.
-#define SURE 0x1p115
-
 /// A whole number of up to 191 bits, 2^64 * high + low: products can be added up before anything is carried.
 typedef struct parts {
     enf_int128 high, low;
@@ -62,7 +59,7 @@ int enf_points_orient_quickly(const double a[3], const double b[3], const double
     double uy_vz = uy * vz, uz_vy = uz * vy, uz_vx = uz * vx, ux_vz = ux * vz, ux_vy = ux * vy,
            uy_vx = uy * vx;
     double determinant = wx * (uy_vz - uz_vy) + wy * (uz_vx - ux_vz) + wz * (ux_vy - uy_vx);
-    if (fabs(determinant) > SURE) return determinant > 0 ? 1 : -1;
+    if (fabs(determinant) > ENF_ORIENT_SURE) return determinant > 0 ? 1 : -1;
     double magnitude = fabs(wx) * (fabs(uy_vz) + fabs(uz_vy)) + fabs(wy) * (fabs(uz_vx) + fabs(ux_vz)) +
                        fabs(wz) * (fabs(ux_vy) + fabs(uy_vx));
     // Each term is a product of three rounded differences (3u), two rounded products (2u) and three rounded
@@ -74,7 +71,7 @@ int enf_points_orient_quickly(const double a[3], const double b[3], const double
     return ENF_UNSURE;
 }
 
-int enf_points_orient(const double a[3], const double b[3], const double c[3], const double d[3]) {
+int enf_points_orient_closely(const double a[3], const double b[3], const double c[3], const double d[3]) {
     int sign = enf_points_orient_quickly(a, b, c, d);
     return sign == ENF_UNSURE ? enf_points_orient_exactly(a, b, c, d) : sign;
 }
