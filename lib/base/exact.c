@@ -4,6 +4,7 @@
 #include "base/exact.h"
 
 #include "base/limbs.h"
+#include "base/sphere.h"
 
 #include <math.h>
 
@@ -130,9 +131,7 @@ static parts volume_of(const int64_t z[3], const enf_int128 minor[3], bool negat
 }
 
 /// Rows a, b, c, d of the matrix (x, y, z, x^2 + y^2 + z^2) of the corners as seen from the point.
-/// Apart, so that the many that need it not do not save its registers.
-__attribute__((noinline)) static int side_of_sphere_exactly(const double *const corner[4],
-                                                            const double point[3]) {
+int enf_corners_side_of_sphere_exactly(const double *const corner[4], const double point[3]) {
     int64_t v[4][3];
     for (int i = 0; i < 4; i++) subtract_points(corner[i], point, v[i]);
     enf_int128 near[4], across[2]; // of x and y: of rows (i, i + 1), and of (i, i + 2)
@@ -153,60 +152,8 @@ __attribute__((noinline)) static int side_of_sphere_exactly(const double *const 
     return 0;
 }
 
-/// Shewchuk's bound A for insphere: (16 + 224u)u times the exact sum of magnitudes.
-#define SPHERE_ERROR (17 * 0x1p-53)
-
-/// Is the determinant so large that its sign is sure? No lift is above `largest`, so no coordinate is above
-/// its root: the sum of magnitudes is at most 4 * 6 * largest^2.5. Squares spare the root.
-static bool is_sure(double determinant, double largest) {
-    const double square = largest * largest, factor = 24 * SPHERE_ERROR;
-    return determinant * determinant > factor * factor * (square * square * largest);
-}
-
-/// Two numbers that are worked on at once.
-typedef double pair __attribute__((vector_size(16)));
-
-/// A number for each of the four corners.
-typedef struct four {
-    pair low, high;
-} four;
-
-/// A coordinate of the corners, as seen from the point.
-static inline four take_coordinate(const double *const corner[4], const double point[3], int axis) {
-    const pair origin = {point[axis], point[axis]};
-    return (four){(pair){corner[0][axis], corner[1][axis]} - origin,
-                  (pair){corner[2][axis], corner[3][axis]} - origin};
-}
-
-/// Those of the next corners.
-static inline four next(four a) {
-    return (four){{a.low[1], a.high[0]}, {a.high[1], a.low[0]}};
-}
-
-/// The filter: rows a, b, c, d, expanded along the last column. *largest receives the largest lift.
-static inline double sphere_determinant(const double *const corner[4], const double point[3],
-                                        double *largest) {
-    const four x = take_coordinate(corner, point, 0), y = take_coordinate(corner, point, 1),
-               z = take_coordinate(corner, point, 2), x1 = next(x), y1 = next(y), z1 = next(z);
-    const four lift = {x.low * x.low + y.low * y.low + z.low * z.low,
-                       x.high * x.high + y.high * y.high + z.high * z.high};
-    const four near = {x.low * y1.low - x1.low * y.low, x.high * y1.high - x1.high * y.high},
-               near1 = next(near);
-    const pair across = x.low * y.high - x.high * y.low;                          // of a and c, b and d
-    const four volume = {z.low * near1.low - z1.low * across + z.high * near.low, // abc, bcd, cda, dab
-                         z.high * near1.high + z1.high * across + z.low * near.high};
-    const four other = next(volume);
-    const pair low = lift.low * other.low, high = lift.high * other.high;
-    const double even = lift.low[0] > lift.high[0] ? lift.low[0] : lift.high[0],
-                 odd = lift.low[1] > lift.high[1] ? lift.low[1] : lift.high[1];
-    *largest = even > odd ? even : odd;
-    return (low[0] - low[1]) + (high[0] - high[1]);
-}
-
 int enf_points_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
                               const double point[3]) {
     const double *const corner[4] = {a, b, c, d};
-    double largest, determinant = sphere_determinant(corner, point, &largest);
-    if (is_sure(determinant, largest)) return determinant > 0 ? 1 : -1;
-    return side_of_sphere_exactly(corner, point);
+    return enf_corners_side_of_sphere(corner, point);
 }

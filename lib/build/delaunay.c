@@ -11,6 +11,7 @@
 #include "base/array.h"
 #include "base/exact.h"
 #include "base/hash.h"
+#include "base/sphere.h"
 #include "build/tet_order.h"
 
 #include <stdlib.h>
@@ -100,9 +101,9 @@ static bool perturbed_sphere_holds(const triangulation *d, const int32_t corner[
 }
 
 static bool sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
-    const int side =
-        enf_points_side_of_sphere(point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, corner[2]),
-                                  point_at(d, corner[3]), point_at(d, point));
+    const double *const at[4] = {point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, corner[2]),
+                                 point_at(d, corner[3])};
+    const int side = enf_corners_side_of_sphere(at, point_at(d, point));
     return side > 0 || (side == 0 && perturbed_sphere_holds(d, corner, point));
 }
 
