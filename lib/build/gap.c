@@ -186,9 +186,15 @@ static void project(const enf_complex *complex, int32_t piece, const double orig
     }
 }
 
+static void copy_outline(outline *to, const outline *from) {
+    to->count = from->count;
+    memcpy(to->at, from->at, (size_t)from->count * sizeof *from->at);
+}
+
 /// Keeps what lies left of the line from a to b.
 static void clip(outline *shape, const double a[2], const double b[2]) {
-    outline kept = {.count = 0};
+    outline kept; // only what is counted is set
+    kept.count = 0;
     for (int i = 0; i < shape->count; i++) {
         const double *p = shape->at[i], *q = shape->at[(i + 1) % shape->count];
         double side = cross(a, b, p), next = cross(a, b, q);
@@ -198,7 +204,7 @@ static void clip(outline *shape, const double a[2], const double b[2]) {
         for (int k = 0; k < 2; k++) kept.at[kept.count][k] = p[k] + t * (q[k] - p[k]);
         kept.count++;
     }
-    *shape = kept;
+    copy_outline(shape, &kept);
 }
 
 /// Of the narrowest strip that holds the outline; it has an edge on its side.
@@ -233,6 +239,12 @@ typedef struct place {
     outline open;
 } place;
 
+static void put_place(place *to, int32_t cell, int32_t through, const outline *open) {
+    to->cell = cell;
+    to->through = through;
+    copy_outline(&to->open, open);
+}
+
 static size_t first_port(const layer *l, int32_t cell) {
     size_t low = 0, high = l->count;
     while (low < high) {
@@ -261,11 +273,14 @@ static void look_through(const layer *l, port start, place stack[PLACES_MAX], in
     stack[0].through = start.piece;
     project(complex, start.piece, origin, axes, &stack[0].open);
     for (int steps = 0; waiting > 0 && steps < PLACES_MAX; steps++) {
-        place here = stack[--waiting];
+        place here;
+        const place *next = &stack[--waiting];
+        put_place(&here, next->cell, next->through, &next->open);
         for (size_t k = first_port(l, here.cell); k < l->count && l->ports[k].cell == here.cell; k++) {
             int32_t piece = l->ports[k].piece;
             if (piece == here.through) continue;
-            outline shape, both = here.open;
+            outline shape, both;
+            copy_outline(&both, &here.open);
             project(complex, piece, origin, axes, &shape);
             for (int e = 0; e < shape.count && both.count > 0; e++)
                 clip(&both, shape.at[e], shape.at[(e + 1) % shape.count]);
@@ -275,7 +290,7 @@ static void look_through(const layer *l, port start, place stack[PLACES_MAX], in
             if (to < 0 || !l->gap[to])
                 enf_sets_unite(parent, from < 0 ? outside : from, to < 0 ? outside : to);
             else if (waiting < PLACES_MAX)
-                stack[waiting++] = (place){to, piece, both};
+                put_place(&stack[waiting++], to, piece, &both);
         }
     }
 }
