@@ -92,7 +92,7 @@ static void make_edge_filter(const enf_geometry *geometry, const int32_t *define
     filter->normal[j] = v;
     filter->normal[k] = -u;
     double one = v * p[j], two = u * p[k], magnitude = fabs(one) + fabs(two);
-    filter->normal_size = fmax(fabs(u), fabs(v));
+    filter->normal_size = fabs(u) > fabs(v) ? fabs(u) : fabs(v);
     filter->normal_error = filter->normal_size < 0x1p53 ? 0 : 2 * U * filter->normal_size;
     filter->offset = two - one;
     filter->offset_error = 5 * U * magnitude + 1.001 * filter->normal_error * (fabs(p[j]) + fabs(p[k]));
@@ -119,7 +119,8 @@ void enf_geometry_make_filter(const enf_geometry *geometry, int32_t plane, enf_p
         int j = (i + 1) % 3, k = (i + 2) % 3;
         double one = u[j] * v[k], two = u[k] * v[j];
         filter->normal[i] = one - two;
-        bound = fmax(bound, fabs(one) + fabs(two));
+        double both = fabs(one) + fabs(two);
+        bound = both > bound ? both : bound;
     }
     filter->normal_size = largest(filter->normal);
     filter->normal_error = 5 * U * bound;
@@ -204,7 +205,8 @@ static void approximate(const enf_geometry *geometry, enf_crossing *crossing) {
         at_error += 2 * (off[k] * size[l] * size[m] + reach[k] * (error[l] * size[m] + size[l] * error[m])) +
                     2 * 8 * U * reach[k] * size[l] * size[m];
         at_magnitude += 2 * reach[k] * size[l] * size[m];
-        at_unit = fmin(at_unit, f[k]->offset_unit * f[l]->normal_unit * f[m]->normal_unit);
+        double unit = f[k]->offset_unit * f[l]->normal_unit * f[m]->normal_unit;
+        at_unit = unit < at_unit ? unit : at_unit;
     }
     for (int i = 0; i < 3; i++) crossing->at[i] = at[i];
     crossing->at_error = 1.01 * at_error;
@@ -300,27 +302,24 @@ const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t 
     return &geometry->crossings[vertex - geometry->point_count];
 }
 
-/// How many of the points that define `plane` also define both a and b.
-static int shared_points(const int32_t plane[3], const int32_t a[3], const int32_t b[3]) {
-    int count = 0;
-    for (int i = 0; i < 3; i++) {
-        if (plane[i] < 0) continue;
-        bool in_a = plane[i] == a[0] || plane[i] == a[1] || plane[i] == a[2];
-        bool in_b = plane[i] == b[0] || plane[i] == b[1] || plane[i] == b[2];
-        count += in_a && in_b;
+/// The planes of a crossing that a point defines; a bit each.
+static inline unsigned defined_by(const enf_geometry *geometry, const enf_crossing *crossing, int32_t point) {
+    unsigned bits = 0;
+    for (int k = 0; k < 3; k++) {
+        const int32_t *plane = geometry->planes[crossing->plane[k]];
+        bits |= (unsigned)((plane[0] == point) | (plane[1] == point) | (plane[2] == point)) << k;
     }
-    return count;
+    return bits;
 }
 
 /// Does the plane go through the line in which two planes of the crossing meet, because two points say so?
 /// The usual way for a crossing to lie on a fourth plane, known without arithmetic.
 static bool shares_line(const enf_geometry *geometry, const enf_crossing *crossing, int32_t plane) {
-    for (int k = 0; k < 3; k++) {
-        const int32_t *a = geometry->planes[crossing->plane[k]],
-                      *b = geometry->planes[crossing->plane[(k + 1) % 3]];
-        if (shared_points(geometry->planes[plane], a, b) >= 2) return true;
-    }
-    return false;
+    const int32_t *defined = geometry->planes[plane];
+    unsigned a = defined_by(geometry, crossing, defined[0]), b = defined_by(geometry, crossing, defined[1]),
+             c = defined[2] < 0 ? 0 : defined_by(geometry, crossing, defined[2]);
+    unsigned ab = a & b, bc = b & c, ca = c & a;
+    return (ab & (ab - 1)) || (bc & (bc - 1)) || (ca & (ca - 1)); // two bits in one of them
 }
 
 /// The same for the plane through a polygon's edge, where two of the crossing's planes hold the edge's ends
@@ -430,9 +429,8 @@ static int sign_in_pairs(const enf_geometry *geometry, const enf_crossing *cross
 /// Where rounding may hide the side.
 static int decide_crossing(enf_geometry *geometry, enf_crossing *crossing, int32_t plane,
                            const enf_plane_filter *filter, double value, double magnitude, double error) {
-    if (error == 6 * U * magnitude &&
-        magnitude < 0x1p53 * fmin(filter->normal_unit * crossing->at_unit,
-                                  filter->offset_unit * crossing->weight_unit)) {
+    if (error == 6 * U * magnitude && magnitude < 0x1p53 * filter->normal_unit * crossing->at_unit &&
+        magnitude < 0x1p53 * filter->offset_unit * crossing->weight_unit) {
         geometry->decided[ENF_TIER_FILTER]++; // nothing was rounded: 0 is 0
         return value > 0 ? crossing->weight_sign : value < 0 ? -crossing->weight_sign : 0;
     }
