@@ -21,6 +21,20 @@ static double largest(const double v[3]) {
     return x > y ? (x > z ? x : z) : (y > z ? y : z);
 }
 
+/// Of a power of two.
+static int16_t exponent_of(double power) {
+    uint64_t bits;
+    memcpy(&bits, &power, sizeof bits);
+    return (int16_t)((int)(bits >> 52) - 1023);
+}
+
+static double power_of_two(int exponent) {
+    uint64_t bits = (uint64_t)(exponent + 1023) << 52;
+    double power;
+    memcpy(&power, &bits, sizeof power);
+    return power;
+}
+
 static int axis_of(int32_t code) {
     return -1 - code;
 }
@@ -212,10 +226,11 @@ static void approximate(const enf_geometry *geometry, enf_crossing *crossing) {
     crossing->at_error = 1.01 * at_error;
     crossing->weight_error = 6.06 * (error[0] * size[1] * size[2] + size[0] * error[1] * size[2] +
                                      size[0] * size[1] * error[2] + 8 * U * size[0] * size[1] * size[2]);
-    crossing->at_unit = at_unit;
-    crossing->weight_unit = f[0]->normal_unit * f[1]->normal_unit * f[2]->normal_unit;
+    double weight_unit = f[0]->normal_unit * f[1]->normal_unit * f[2]->normal_unit;
+    crossing->at_unit = exponent_of(at_unit);
+    crossing->weight_unit = exponent_of(weight_unit);
     bool exact_normals = error[0] == 0 && error[1] == 0 && error[2] == 0;
-    if (exact_normals && 6 * size[0] * size[1] * size[2] < 0x1p53 * crossing->weight_unit) {
+    if (exact_normals && 6 * size[0] * size[1] * size[2] < 0x1p53 * weight_unit) {
         crossing->weight_error = 0;
     }
     if (exact_normals && off[0] == 0 && off[1] == 0 && off[2] == 0 && at_magnitude < 0x1p53 * at_unit) {
@@ -232,7 +247,7 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
     crossing->plane[0] = a;
     crossing->plane[1] = b;
     crossing->plane[2] = c;
-    crossing->position_error = 0;
+    crossing->located = false;
     approximate(geometry, crossing);
     if (fabs(crossing->weight) > crossing->weight_error) {
         crossing->weight_sign = crossing->weight > 0 ? 1 : -1;
@@ -394,10 +409,9 @@ static void find_position(const enf_geometry *geometry, const enf_crossing *cros
 
 /// Notes where the crossing is, if that is not known.
 static void locate(const enf_geometry *geometry, enf_crossing *crossing) {
-    if (crossing->position_error > 0) return;
+    if (crossing->located) return;
     find_position(geometry, crossing, crossing->position);
-    // Less than one step or one unit in the last place.
-    crossing->position_error = 1 + 0x1p-50 * largest(crossing->position);
+    crossing->located = true;
 }
 
 /// The side by the crossing's position, 0 if it may be off by more than its distance from the plane.
@@ -411,8 +425,9 @@ static int side_of_position(const enf_geometry *geometry, const enf_crossing *cr
         magnitude += fabs(filter->normal[i] * difference);
         reach += fabs(difference);
     }
+    double off = 1 + 0x1p-50 * largest(crossing->position); // a step, or a unit in the last place
     double error = 6 * U * magnitude + 1.001 * filter->normal_error * reach +
-                   3.01 * (filter->normal_size + filter->normal_error) * crossing->position_error;
+                   3.01 * (filter->normal_size + filter->normal_error) * off;
     if (fabs(value) > error) return value > 0 ? 1 : -1;
     return 0;
 }
@@ -429,8 +444,9 @@ static int sign_in_pairs(const enf_geometry *geometry, const enf_crossing *cross
 /// Where rounding may hide the side.
 static int decide_crossing(enf_geometry *geometry, enf_crossing *crossing, int32_t plane,
                            const enf_plane_filter *filter, double value, double magnitude, double error) {
-    if (error == 6 * U * magnitude && magnitude < 0x1p53 * filter->normal_unit * crossing->at_unit &&
-        magnitude < 0x1p53 * filter->offset_unit * crossing->weight_unit) {
+    if (error == 6 * U * magnitude &&
+        magnitude < 0x1p53 * filter->normal_unit * power_of_two(crossing->at_unit) &&
+        magnitude < 0x1p53 * filter->offset_unit * power_of_two(crossing->weight_unit)) {
         geometry->decided[ENF_TIER_FILTER]++; // nothing was rounded: 0 is 0
         return value > 0 ? crossing->weight_sign : value < 0 ? -crossing->weight_sign : 0;
     }
@@ -438,7 +454,7 @@ static int decide_crossing(enf_geometry *geometry, enf_crossing *crossing, int32
         geometry->decided[ENF_TIER_FILTER]++;
         return 0;
     }
-    bool located = crossing->position_error > 0;
+    bool located = crossing->located;
     int sign = located ? side_of_position(geometry, crossing, plane, filter) : 0;
     bool on_edge = sign == 0 && holds_edge(geometry, crossing, plane);
     if (!located && !on_edge) {

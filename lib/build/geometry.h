@@ -23,15 +23,15 @@ typedef struct enf_plane_filter {
     int32_t axis;                    ///< the axis that the plane is square to (its normal is +-1 then), or -1
 } enf_plane_filter;
 
-/// A crossing of three planes in homogeneous coordinates, with error bounds.
+/// A crossing of three planes in homogeneous coordinates, with error bounds. There are very many.
 typedef struct enf_crossing {
     int32_t plane[3];
-    int32_t weight_sign;           ///< exact sign of the weight
+    int16_t at_unit, weight_unit;  ///< the true values are divisible by two to the power of these
+    int8_t weight_sign;            ///< exact sign of the weight
+    bool located;                  ///< there is a position
     double at[3], weight;          ///< the point is at / weight
     double at_error, weight_error; ///< 0: exact
-    double at_unit, weight_unit;   ///< powers of two that divide the true values
-    double position[3];            ///< once it has been asked for, or the filter did not do
-    double position_error;         ///< bound on each coordinate's; 0: there is no position yet
+    double position[3];            ///< rounded; once it has been asked for, or the filter did not do
 } enf_crossing;
 
 /// What decides a predicate: doubles, pairs of doubles, whole numbers of any size.
