@@ -40,7 +40,7 @@ static uint32_t hash_edge(int32_t a, int32_t b) {
 
 /// The slot of the face with these ascending corners, or where it would be. The lowest corner says where to
 /// look, so that faces that are near in space are near in memory.
-static int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
+static inline int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
     int32_t *slots = mesh->slots + mesh->slot_begin[face[0]];
     const uint32_t count = mesh->slot_begin[face[0] + 1] - mesh->slot_begin[face[0]];
     uint32_t at = (uint32_t)((uint64_t)hash_edge(face[1], face[2]) * count >> 32);
