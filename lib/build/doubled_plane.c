@@ -103,11 +103,16 @@ FUSED void enf_doubled_planes_meet(const enf_doubled_plane plane[3], enf_doubled
     meeting->reach = b->reach + c->reach;
 }
 
+int enf_doubled_meeting_weight_sign(const enf_doubled_meeting *meeting) {
+    if (!(fabs(meeting->weight.high) > 2 * UNSURE * meeting->size)) return 0;
+    return meeting->weight.high > 0 ? 1 : -1;
+}
+
 FUSED bool enf_doubled_meeting_point(const enf_doubled_meeting *meeting, const double origin[3],
                                      double point[3]) {
     const enf_doubled *at = meeting->at, weight = meeting->weight;
     double farthest = 0;
-    if (!(fabs(weight.high) > 2 * UNSURE * meeting->size)) return false;
+    if (enf_doubled_meeting_weight_sign(meeting) == 0) return false;
     for (int i = 0; i < 3; i++) {
         double quotient = at[i].high / weight.high;
         enf_doubled rest = subtract(at[i], multiply_by(weight, quotient));

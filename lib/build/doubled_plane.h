@@ -37,6 +37,9 @@ void enf_doubled_planes_meet(const enf_doubled_plane plane[3], enf_doubled_meeti
 /// certain.
 int enf_doubled_meeting_sign(const enf_doubled_meeting *meeting, const enf_doubled_plane *plane);
 
+/// Sign of the weight, or 0 if that is not certain.
+int enf_doubled_meeting_weight_sign(const enf_doubled_meeting *meeting);
+
 /// The point in which the planes meet, rounded, each coordinate off by less than one step (1) or one unit in
 /// the last place, whichever is more. False if that is not certain.
 bool enf_doubled_meeting_point(const enf_doubled_meeting *meeting, const double origin[3], double point[3]);

@@ -238,6 +238,57 @@ static void approximate(const enf_geometry *geometry, enf_crossing *crossing) {
     }
 }
 
+/// A plane with coefficients in pairs, as seen from a point of another. False if they do not fit.
+static bool doubled_plane_of(const enf_geometry *geometry, int32_t plane, const double *origin,
+                             enf_doubled_plane *out) {
+    double u[3], v[3];
+    plane_spans(geometry, plane, u, v);
+    return enf_doubled_plane_set(out, geometry->points + 3 * (size_t)geometry->planes[plane][0], u, v,
+                                 origin);
+}
+
+/// Where the planes of a crossing meet, as seen from a point of the first, which is the origin. False if they
+/// do not fit.
+static bool make_meeting(const enf_geometry *geometry, const enf_crossing *crossing, const double *origin,
+                         enf_doubled_meeting *meeting) {
+    enf_doubled_plane plane[3];
+    for (int k = 0; k < 3; k++) {
+        if (!doubled_plane_of(geometry, crossing->plane[k], origin, &plane[k])) return false;
+    }
+    enf_doubled_planes_meet(plane, meeting);
+    return true;
+}
+
+static const double *origin_of(const enf_geometry *geometry, const enf_crossing *crossing) {
+    return geometry->points + 3 * (size_t)geometry->planes[crossing->plane[0]][0];
+}
+
+/// The same, kept or made in `room`; null if they do not fit.
+static const enf_doubled_meeting *meeting_of(const enf_geometry *geometry, const enf_crossing *crossing,
+                                             enf_doubled_meeting *room) {
+    const double *origin = origin_of(geometry, crossing);
+    enf_kept_filters *kept = geometry->kept;
+    if (!kept) return make_meeting(geometry, crossing, origin, room) ? room : NULL;
+    size_t slot = (size_t)(crossing - geometry->crossings) % ENF_MEETINGS_KEPT;
+    if (memcmp(kept->meeting_of[slot], crossing->plane, sizeof crossing->plane) != 0) {
+        memset(kept->meeting_of[slot], 0, sizeof kept->meeting_of[slot]);
+        if (!make_meeting(geometry, crossing, origin, &kept->meeting[slot])) return NULL;
+        memcpy(kept->meeting_of[slot], crossing->plane, sizeof crossing->plane);
+    }
+    return &kept->meeting[slot];
+}
+
+/// The weight's sign, where rounding may hide it.
+static int decide_weight(const enf_geometry *geometry, const enf_crossing *crossing) {
+    enf_doubled_meeting room;
+    const enf_doubled_meeting *meeting = meeting_of(geometry, crossing, &room);
+    int sign = meeting ? enf_doubled_meeting_weight_sign(meeting) : 0;
+    if (sign != 0) return sign;
+    enf_exact_plane plane[3];
+    for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &plane[k]);
+    return enf_exact_planes_weight_sign(plane);
+}
+
 int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t c) {
     if (!enf_array_reserve(geometry->crossings, geometry->crossing_capacity,
                            (size_t)geometry->crossing_count + 1)) {
@@ -252,9 +303,7 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
     if (fabs(crossing->weight) > crossing->weight_error) {
         crossing->weight_sign = crossing->weight > 0 ? 1 : -1;
     } else {
-        enf_exact_plane plane[3];
-        for (int k = 0; k < 3; k++) exact_plane_of(geometry, crossing->plane[k], &plane[k]);
-        crossing->weight_sign = enf_exact_planes_weight_sign(plane);
+        crossing->weight_sign = (int8_t)decide_weight(geometry, crossing);
     }
     return geometry->point_count + geometry->crossing_count++;
 }
@@ -350,46 +399,6 @@ static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int
                    side_of_point(geometry, defined[1], crossing->plane[k], filter) == 0;
     }
     return holding >= 2;
-}
-
-/// A plane with coefficients in pairs, as seen from a point of another. False if they do not fit.
-static bool doubled_plane_of(const enf_geometry *geometry, int32_t plane, const double *origin,
-                             enf_doubled_plane *out) {
-    double u[3], v[3];
-    plane_spans(geometry, plane, u, v);
-    return enf_doubled_plane_set(out, geometry->points + 3 * (size_t)geometry->planes[plane][0], u, v,
-                                 origin);
-}
-
-/// Where the planes of a crossing meet, as seen from a point of the first, which is the origin. False if they
-/// do not fit.
-static bool make_meeting(const enf_geometry *geometry, const enf_crossing *crossing, const double *origin,
-                         enf_doubled_meeting *meeting) {
-    enf_doubled_plane plane[3];
-    for (int k = 0; k < 3; k++) {
-        if (!doubled_plane_of(geometry, crossing->plane[k], origin, &plane[k])) return false;
-    }
-    enf_doubled_planes_meet(plane, meeting);
-    return true;
-}
-
-static const double *origin_of(const enf_geometry *geometry, const enf_crossing *crossing) {
-    return geometry->points + 3 * (size_t)geometry->planes[crossing->plane[0]][0];
-}
-
-/// The same, kept or made in `room`; null if they do not fit.
-static const enf_doubled_meeting *meeting_of(const enf_geometry *geometry, const enf_crossing *crossing,
-                                             enf_doubled_meeting *room) {
-    const double *origin = origin_of(geometry, crossing);
-    enf_kept_filters *kept = geometry->kept;
-    if (!kept) return make_meeting(geometry, crossing, origin, room) ? room : NULL;
-    size_t slot = (size_t)(crossing - geometry->crossings) % ENF_MEETINGS_KEPT;
-    if (memcmp(kept->meeting_of[slot], crossing->plane, sizeof crossing->plane) != 0) {
-        memset(kept->meeting_of[slot], 0, sizeof kept->meeting_of[slot]);
-        if (!make_meeting(geometry, crossing, origin, &kept->meeting[slot])) return NULL;
-        memcpy(kept->meeting_of[slot], crossing->plane, sizeof crossing->plane);
-    }
-    return &kept->meeting[slot];
 }
 
 /// The crossing in rounded coordinates.
