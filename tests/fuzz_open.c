@@ -4,6 +4,7 @@
 // that can be used.
 #include "base/hash.h"
 #include "enfilade/objects.h"
+#include "enfilade/prefetch.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -123,6 +124,18 @@ static void use_shapes(const enf_world *world, const enf_file_view *file) {
     enf_query_free(query);
 }
 
+static void use_prefetch(const enf_world *world, const enf_file_view *file) {
+    enf_prefetch *prefetch = NULL;
+    if (!enf_prefetch_create(&prefetch, world, NULL)) {
+        for (int32_t i = 0; i < file->cell_count && i < 16; i++) {
+            sink +=
+                enf_prefetch_list(prefetch, i, file->cells[i].box_min, file->cells[i].box_max, 1, NULL, 0);
+            enf_world_advise_cell(world, i, i % 2);
+        }
+    }
+    enf_prefetch_free(prefetch);
+}
+
 static void use(const enf_world *world) {
     const enf_file_view *file = enf_world_file(world);
     enf_world_info info;
@@ -136,6 +149,7 @@ static void use(const enf_world *world) {
     use_sides(file);
     use_locate(world, file);
     use_shapes(world, file);
+    use_prefetch(world, file);
 }
 
 static void open_and_use(const uint8_t *bytes, size_t size, bool skip_checksums) {

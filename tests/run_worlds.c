@@ -3,6 +3,7 @@
 
 #include "build/write.h"
 #include "format/frame.h"
+#include "format/pvs_row.h"
 #include "format/save.h"
 #include "format/sections.h"
 #include "world_fixture.h"
@@ -37,6 +38,9 @@ typedef struct maker {
     enf_file_portal_polygon *polygons;
     double (*vertices)[3];
     int32_t *cell_portals, *cell_triangles, *fine_cell;
+    enf_file_pvs pvs;
+    int64_t *pvs_offset;
+    uint8_t *pvs_rows;
 } maker;
 
 uint64_t run_random(uint64_t *seed) {
@@ -246,6 +250,35 @@ static void make_cells(maker *m, int32_t count) {
     view->fine_cell = m->fine_cell;
 }
 
+static void make_pvs(maker *m) {
+    enf_file_view *view = &m->image.view;
+    size_t cells = (size_t)view->cell_count, bytes = enf_pvs_row_bytes(view->cell_count);
+    uint8_t *row = take(bytes, 1), *near = take(cells, 1);
+    m->pvs_offset = take(cells + 1, sizeof *m->pvs_offset);
+    m->pvs_rows = take(2 * bytes * cells, 1);
+    for (int32_t i = 0; i < view->cell_count; i++) {
+        memset(row, 0, bytes);
+        memset(near, 0, cells);
+        near[i] = 1;
+        for (int step = 1; step < 3; step++)
+            for (int32_t k = 0; k < view->portal_count; k++)
+                if (near[m->portals[k].from] == step && !near[m->portals[k].to])
+                    near[m->portals[k].to] = (uint8_t)(step + 1);
+        for (size_t k = 0; k < cells; k++) {
+            m->pvs.pairs += near[k] != 0;
+            if (near[k]) row[k / 8] |= (uint8_t)(1u << k % 8);
+        }
+        m->pvs_offset[i + 1] =
+            m->pvs_offset[i] + (int64_t)enf_pvs_row_encode(row, bytes, m->pvs_rows + m->pvs_offset[i]);
+    }
+    view->pvs = &m->pvs;
+    view->pvs_offset = m->pvs_offset;
+    view->pvs_byte_count = m->pvs_offset[cells];
+    view->pvs_rows = m->pvs_rows;
+    free(row);
+    free(near);
+}
+
 static void drop_exact(enf_file_view *view) {
     for (int i = 0; i < enf_section_spec_count; i++)
         if (enf_section_specs[i].part == ENF_PART_EXACT)
@@ -298,12 +331,13 @@ run_world run_world_grid(int side, bool turned, uint64_t seed) {
     drop_exact(&m.image.view);
     make_portals(&m);
     make_cells(&m, count);
+    make_pvs(&m);
     char path[] = "grid-XXXXXX";
     name_file(path);
     if (enf_view_save(&m.image.view, path, NULL)) abort();
     run_world grid = open_world(path);
-    void *taken[] = {m.cell_of,  m.openings,     m.cells,          m.portals,  m.polygons,
-                     m.vertices, m.cell_portals, m.cell_triangles, m.fine_cell};
+    void *taken[] = {m.cell_of,      m.openings,       m.cells,     m.portals,    m.polygons, m.vertices,
+                     m.cell_portals, m.cell_triangles, m.fine_cell, m.pvs_offset, m.pvs_rows};
     for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) free(taken[i]);
     enf_image_free(&m.image);
     fixture_free(&m.fixture);

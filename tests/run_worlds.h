@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random worlds of many cells that need no builder: the cubes of the air of world_fixture are joined at
 // random to (concave) cells, with random convex portals in some of the faces between them, and walls
-// elsewhere.
+// elsewhere; a cell sees what is at most two portals away.
 #ifndef ENF_TESTS_RUN_WORLDS_H
 #define ENF_TESTS_RUN_WORLDS_H
 

@@ -6,15 +6,12 @@
 
 #include "run/query.h"
 #include "run/shape.h"
+#include "run/take.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum { OBJECTS_DEFAULT = 1024, LINKS_PER_OBJECT = 3 };
-
-static void *take(size_t count, size_t size) {
-    return count > SIZE_MAX / size - 1 ? NULL : calloc(count + 1, size);
-}
 
 /// All slots and links free, all lists empty.
 static void clear(enf_objects *objects) {
@@ -35,9 +32,9 @@ static void clear(enf_objects *objects) {
 
 static enf_status take_memory(enf_objects *objects, const enf_world *world, enf_error *error) {
     size_t links = (size_t)objects->objects_max + (size_t)objects->links_max;
-    objects->slots = take((size_t)objects->objects_max, sizeof *objects->slots);
-    objects->links = take(links, sizeof *objects->links);
-    objects->lists = take((size_t)objects->cell_count + 2, sizeof *objects->lists);
+    objects->slots = enf_take((size_t)objects->objects_max, sizeof *objects->slots);
+    objects->links = enf_take(links, sizeof *objects->links);
+    objects->lists = enf_take((size_t)objects->cell_count + 2, sizeof *objects->lists);
     if (!objects->slots || !objects->links || !objects->lists)
         return enf_fail_memory(error, "moving objects");
     enf_query_options options = {.size = sizeof options, .skip_triangles = true, .images_max = 1};

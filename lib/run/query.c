@@ -6,6 +6,7 @@
 
 #include "run/instance.h"
 #include "run/shape.h"
+#include "run/take.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,10 +24,6 @@ static enf_status check_options(const enf_query_options *options, enf_error *err
     if (options->cells_max >= 0 && options->images_max >= 0) return ENF_OK;
     return enf_fail(error, ENF_BAD_USAGE, "a query object for %ld cells and %ld images; give numbers from 0",
                     (long)options->cells_max, (long)options->images_max);
-}
-
-static void *take(size_t count, size_t size) {
-    return count > SIZE_MAX / size - 1 ? NULL : calloc(count + 1, size);
 }
 
 enf_status enf_query_create(enf_query **out, const enf_world *world, const enf_query_options *options,
@@ -47,13 +44,13 @@ enf_status enf_query_create(enf_query **out, const enf_world *world, const enf_q
     int32_t most = view->cell_count < INT32_MAX - CELLS_MORE ? view->cell_count + CELLS_MORE : INT32_MAX;
     query->flooded_max = options->cells_max ? options->cells_max : most;
     query->images_max = options->images_max ? options->images_max : IMAGES_DEFAULT;
-    query->seen = take((size_t)view->cell_count, sizeof *query->seen);
-    query->first = take((size_t)view->cell_count, sizeof *query->first);
-    query->flooded = take((size_t)query->flooded_max, sizeof *query->flooded);
-    query->images = take((size_t)query->images_max, sizeof *query->images);
+    query->seen = enf_take((size_t)view->cell_count, sizeof *query->seen);
+    query->first = enf_take((size_t)view->cell_count, sizeof *query->first);
+    query->flooded = enf_take((size_t)query->flooded_max, sizeof *query->flooded);
+    query->images = enf_take((size_t)query->images_max, sizeof *query->images);
     bool taken = query->seen && query->first && query->flooded && query->images;
     if (!options->skip_triangles) {
-        query->triangle_seen = take((size_t)view->triangle_count, sizeof *query->triangle_seen);
+        query->triangle_seen = enf_take((size_t)view->triangle_count, sizeof *query->triangle_seen);
         taken = taken && query->triangle_seen;
     }
     if (!taken) {

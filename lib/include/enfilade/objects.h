@@ -41,7 +41,7 @@ typedef struct enf_objects_options {
 } enf_objects_options;
 
 /// An empty set of objects. The world must stay open as long as it lives. Takes 144 bytes for each object, 24
-/// for each link and 28 for each cell. ENF_BAD_USAGE for options out of range, ENF_NO_RESOURCES without
+/// for each link and 32 for each cell. ENF_BAD_USAGE for options out of range, ENF_NO_RESOURCES without
 /// memory.
 ENF_API enf_status enf_objects_create(enf_objects **objects, const enf_world *world,
                                       const enf_objects_options *options, enf_error *error);
