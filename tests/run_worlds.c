@@ -344,6 +344,37 @@ run_world run_world_grid(int side, bool turned, uint64_t seed) {
     return grid;
 }
 
+double run_nasty(uint64_t *seed) {
+    static const double nasty[] = {0,      -0.0,     1,         -1,    1e-310,   1e300,
+                                   -1e300, 0x1p1000, -0x1p1000, 1e150, 0x1p-1000};
+    return nasty[run_random(seed) % (sizeof nasty / sizeof *nasty)];
+}
+
+static void scramble(const void *array, size_t count, uint64_t *seed) {
+    double *numbers = (double *)(uintptr_t)array;
+    for (size_t i = 0; i < count; i++)
+        if (run_random(seed) % 4 == 0) numbers[i] = run_nasty(seed);
+}
+
+void run_world_scramble(run_world *world, uint64_t *seed) {
+    const enf_file_view *view = enf_world_file(world->world);
+    enf_open_options options = {.size = sizeof options, .skip_checksums = true};
+    enf_error error;
+    scramble(view->portal_vertices, 3 * (size_t)view->portal_vertex_count, seed);
+    scramble(view->render_points, 3 * (size_t)view->render_point_count, seed);
+    for (int32_t i = 0; i < view->portal_polygon_count; i++)
+        if (run_random(seed) % 2) scramble(view->portal_polygons[i].plane, 4, seed);
+    for (int32_t i = 0; i < view->portal_count; i++) {
+        enf_file_portal *portal = (enf_file_portal *)(uintptr_t)&view->portals[i];
+        if (run_random(seed) % 4 == 0) portal->radius = fabs(run_nasty(seed));
+        if (run_random(seed) % 4 == 0) portal->centre[run_random(seed) % 3] = run_nasty(seed);
+    }
+    enf_world_close(world->world);
+    if (!enf_world_open_memory(&world->world, world->bytes, world->size, &options, &error)) return;
+    fprintf(stderr, "%s\n", error.text);
+    abort();
+}
+
 void run_world_free(run_world *opened) {
     enf_world_close(opened->world);
     free(opened->bytes);

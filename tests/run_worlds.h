@@ -21,6 +21,13 @@ run_world run_world_grid(int side, bool turned, uint64_t seed);
 run_world run_world_compile(const char *path);
 #endif
 
+/// Puts numbers that are finite and make no sense into the portals and the points of triangles, and opens it
+/// again.
+void run_world_scramble(run_world *world, uint64_t *seed);
+
+/// Such a number.
+double run_nasty(uint64_t *seed);
+
 void run_world_free(run_world *grid);
 
 /// The next of a sequence (splitmix64).
