@@ -72,20 +72,26 @@ static void take_cut_edge(edges *edges, const double *from, const double *to, co
     take_edge(edges, here < 0 ? at : from, here < 0 ? to : at);
 }
 
+static bool is_zero(const double v[3]) {
+    return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+/// True if the centre's foot on the polygon's plane lies on the positive side of the cut.
+static bool foot_is_open(const double centre[3], double height, const enf_face *face, double slack) {
+    double foot[3];
+    for (int a = 0; a < 3; a++) foot[a] = centre[a] - height * face->normal[a];
+    return !(height_above(face->cut, foot) + slack < 0);
+}
+
 static bool sphere_meets(const double centre[3], double radius, const enf_face *face, double slack) {
-    double off[3], limit = radius + slack, cut_slack = 0;
+    double off[3], limit = radius + slack;
+    double cut_slack = face->cut ? slack * sqrt(dot(face->cut, face->cut)) : 0;
+    edges edges = {.nearest = INFINITY};
+    memcpy(edges.at, centre, sizeof edges.at);
     for (int a = 0; a < 3; a++) off[a] = centre[a] - face->vertices[0][a];
     double height = dot(face->normal, off);
     if (fabs(height) > limit) return false;
-    edges edges = {.nearest = INFINITY};
-    memcpy(edges.at, centre, sizeof edges.at);
-    bool inside = face->normal[0] != 0 || face->normal[1] != 0 || face->normal[2] != 0;
-    if (face->cut) {
-        double foot[3];
-        for (int a = 0; a < 3; a++) foot[a] = centre[a] - height * face->normal[a];
-        cut_slack = slack * sqrt(dot(face->cut, face->cut));
-        inside = inside && !(height_above(face->cut, foot) + cut_slack < 0);
-    }
+    bool inside = !is_zero(face->normal) && (!face->cut || foot_is_open(centre, height, face, cut_slack));
     for (int32_t i = 0; i < face->count; i++) {
         const double *from = face->vertices[i], *to = face->vertices[i + 1 < face->count ? i + 1 : 0];
         double edge[3], inwards[3];
@@ -156,42 +162,61 @@ static bool boxes_meet(const enf_shape *box, const enf_face *face, double slack)
     return true;
 }
 
-/// All coordinates are relative to the centre of the box.
-static bool box_meets(const enf_shape *box, const enf_face *face, double slack) {
-    const double *normal = face->normal, *half = box->half;
-    double off[3];
-    if (!boxes_meet(box, face, slack)) return false;
-    if (normal[0] == 0 && normal[1] == 0 && normal[2] == 0) return true;
-    for (int a = 0; a < 3; a++) off[a] = face->vertices[0][a] - box->centre[a];
-    double height = dot(normal, off);
-    if (fabs(height) >
-        fabs(normal[0]) * half[0] + fabs(normal[1]) * half[1] + fabs(normal[2]) * half[2] + slack)
-        return false;
-    clipped left;
-    make_square(&left, normal, enf_shape_reach(box) + 4 * slack);
+/// How far the polygon's plane is from the centre of the box; false if the box does not reach it.
+static bool plane_meets(const enf_shape *box, const enf_face *face, double slack, double *height) {
+    double off[3], reach = slack;
+    for (int a = 0; a < 3; a++) {
+        off[a] = face->vertices[0][a] - box->centre[a];
+        reach += fabs(face->normal[a]) * box->half[a];
+    }
+    *height = dot(face->normal, off);
+    return !(fabs(*height) > reach);
+}
+
+// Clipped polygons have their coordinates relative to the centre of the box.
+
+/// The part of the polygon's plane that lies in the box.
+static void clip_by_box(clipped *left, const enf_shape *box, const double normal[3], double height,
+                        double slack) {
+    make_square(left, normal, enf_shape_reach(box) + 4 * slack);
     for (int i = 0; i < 4; i++)
-        for (int a = 0; a < 3; a++) left.corner[i][a] += height * normal[a];
+        for (int a = 0; a < 3; a++) left->corner[i][a] += height * normal[a];
     for (int side = 0; side < 6; side++) {
-        double plane[4] = {0, 0, 0, half[side / 2]};
+        double plane[4] = {0, 0, 0, box->half[side / 2]};
         plane[side / 2] = side % 2 ? 1 : -1;
-        clip(&left, plane, slack);
+        clip(left, plane, slack);
     }
-    if (face->cut) {
-        const double *cut = face->cut;
-        const double plane[4] = {cut[0], cut[1], cut[2], height_above(cut, box->centre)};
-        clip(&left, plane, slack * sqrt(dot(cut, cut)));
-    }
-    for (int32_t i = 0; i < face->count && left.count > 0; i++) {
+}
+
+static void clip_by_cut(clipped *left, const enf_shape *box, const double cut[4], double slack) {
+    const double plane[4] = {cut[0], cut[1], cut[2], height_above(cut, box->centre)};
+    clip(left, plane, slack * sqrt(dot(cut, cut)));
+}
+
+static void clip_by_edges(clipped *left, const enf_shape *box, const enf_face *face, double slack) {
+    for (int32_t i = 0; i < face->count && left->count > 0; i++) {
         const double *from = face->vertices[i], *to = face->vertices[i + 1 < face->count ? i + 1 : 0];
-        double edge[3], plane[4];
+        double edge[3], off[3], plane[4];
         for (int a = 0; a < 3; a++) {
             edge[a] = to[a] - from[a];
             off[a] = from[a] - box->centre[a];
         }
-        cross(normal, edge, plane);
+        cross(face->normal, edge, plane);
         plane[3] = -dot(plane, off);
-        clip(&left, plane, slack * sqrt(dot(edge, edge)));
+        clip(left, plane, slack * sqrt(dot(edge, edge)));
     }
+}
+
+static bool box_meets(const enf_shape *box, const enf_face *face, double slack) {
+    const double *normal = face->normal;
+    clipped left;
+    double height;
+    if (!boxes_meet(box, face, slack)) return false;
+    if (is_zero(normal)) return true;
+    if (!plane_meets(box, face, slack, &height)) return false;
+    clip_by_box(&left, box, normal, height, slack);
+    if (face->cut) clip_by_cut(&left, box, face->cut, slack);
+    clip_by_edges(&left, box, face, slack);
     return left.count > 0;
 }
 
