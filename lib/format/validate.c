@@ -193,8 +193,11 @@ static enf_status check_regions(checker *check) {
     return ENF_OK;
 }
 
+/// Ranges that are longer together than what they point into share parts of it: a small file could make
+/// every walk over them as long as it likes.
 static enf_status check_cells(checker *check) {
     const enf_file_view *view = check->view;
+    int64_t portals = 0, triangles = 0;
     for (int32_t i = 0; i < view->cell_count; i++) {
         const enf_file_cell *cell = &view->cells[i];
         bool good = all_finite(cell->box_min, 3) && all_finite(cell->box_max, 3) && isfinite(cell->volume) &&
@@ -204,6 +207,9 @@ static enf_status check_cells(checker *check) {
                      is_range(cell->triangle_first, cell->triangle_count, view->cell_triangle_count));
         for (int32_t k = 0; good && k < cell->portal_count; k++)
             good = view->portals[view->cell_portals[cell->portal_first + k]].from == i;
+        if (good) portals += cell->portal_count;
+        if (good && view->has_geometry) triangles += cell->triangle_count;
+        good = good && portals <= view->cell_portal_count && triangles <= view->cell_triangle_count;
         if (!good) return element_fails(check->error, "CELL", i);
     }
     return ENF_OK;
@@ -211,20 +217,23 @@ static enf_status check_cells(checker *check) {
 
 static enf_status check_portals(checker *check) {
     const enf_file_view *view = check->view;
+    int64_t polygons = 0, vertices = 0;
     if (view->portal_count % 2) return element_fails(check->error, "PORTAL", view->portal_count);
     for (int32_t i = 0; i < view->portal_count; i++) {
         const enf_file_portal *portal = &view->portals[i], *twin = &view->portals[i ^ 1];
         if (!in_range(portal->from, 0, view->cell_count) || twin->to != portal->from ||
             portal->polygon_count < 1 || portal->polygon_count != twin->polygon_count ||
             !is_range(portal->polygon_first, portal->polygon_count, view->portal_polygon_count) ||
-            !all_finite(portal->centre, 3) || !isfinite(portal->radius) || portal->radius < 0)
+            !all_finite(portal->centre, 3) || !isfinite(portal->radius) || portal->radius < 0 ||
+            (polygons += portal->polygon_count) > view->portal_polygon_count)
             return element_fails(check->error, "PORTAL", i);
     }
     for (int32_t i = 0; i < view->portal_polygon_count; i++) {
         const enf_file_portal_polygon *polygon = &view->portal_polygons[i];
         if (!all_finite(polygon->plane, 4) || !isfinite(polygon->area) || polygon->vertex_count < 3 ||
             !is_range(polygon->vertex_first, polygon->vertex_count, view->portal_vertex_count) ||
-            (view->has_exact && !in_range(polygon->loop, 0, view->portal_loop_count)))
+            (view->has_exact && !in_range(polygon->loop, 0, view->portal_loop_count)) ||
+            (vertices += polygon->vertex_count) > view->portal_vertex_count)
             return element_fails(check->error, "PORTPOLY", i);
     }
     return ENF_OK;
