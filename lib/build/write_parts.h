@@ -28,4 +28,7 @@ enf_status enf_image_boxes(enf_image *image, enf_error *error);
 enf_status enf_image_draw(enf_image *image, const enf_build *build, enf_image_strings *strings,
                           enf_error *error);
 
+/// Barriers and their trees, for lines of sight. Needs everything else.
+enf_status enf_image_sight(enf_image *image, const enf_build *build, enf_error *error);
+
 #endif

@@ -339,6 +339,51 @@ static enf_status check_pvs(checker *check) {
     return ENF_OK;
 }
 
+static bool barrier_fits(const enf_file_view *view, const enf_file_barrier *barrier) {
+    bool is_portal = barrier->kind == ENF_FILE_BARRIER_PORTAL;
+    int32_t end = is_portal ? view->portal_count : view->has_geometry ? view->triangle_count : INT32_MAX;
+    return in_range(barrier->kind, 0, ENF_FILE_BARRIER_KINDS) && all_finite(barrier->normal, 3) &&
+           barrier->vertex_count >= 3 &&
+           is_range(barrier->vertex_first, barrier->vertex_count, view->barrier_vertex_count) &&
+           in_range(barrier->index, is_portal ? 0 : -1, end) && !(is_portal && barrier->index % 2);
+}
+
+/// Nodes are referred to once each, level by level, so every walk is one of a tree that is not too deep.
+static enf_status check_barrier_tree(checker *check, const char *tag, const enf_file_barrier_node *nodes,
+                                     int32_t count) {
+    int32_t next = 1, level_end = 1, levels = 1;
+    for (int32_t i = 0; i < count; i++) {
+        if (i == level_end) {
+            level_end = next;
+            levels++;
+        }
+        for (int k = 0; k < 4; k++) {
+            int32_t child = nodes[i].child[k];
+            bool good = child < 0 ? child == -1 || -2 - child < check->view->barrier_count : child == next;
+            if (!good) return element_fails(check->error, tag, i);
+            next += child >= 0;
+        }
+        if (next <= i + 1 && i + 1 < count)
+            return element_fails(check->error, tag, i); // the rest hangs loose
+    }
+    if ((count && next != count) || levels > ENF_FILE_BARRIER_DEPTH_MAX)
+        return element_fails(check->error, tag, count);
+    return ENF_OK;
+}
+
+static enf_status check_sight(checker *check) {
+    const enf_file_view *view = check->view;
+    if (!view->sight) return ENF_OK;
+    if (!(view->sight->extent > 0 && view->sight->extent <= ENF_FILE_GRID_MAX))
+        return element_fails(check->error, "SIGHT", 0);
+    for (int32_t i = 0; i < view->barrier_count; i++) {
+        if (!barrier_fits(view, &view->barriers[i])) return element_fails(check->error, "BARRIER", i);
+    }
+    enf_status status = check_barrier_tree(check, "WALLTREE", view->wall_nodes, view->wall_node_count);
+    if (status) return status;
+    return check_barrier_tree(check, "PORTTREE", view->portal_nodes, view->portal_node_count);
+}
+
 enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
     for (int i = 0; i < enf_section_spec_count; i++) {
         const enf_section_spec *spec = &enf_section_specs[i];
@@ -347,8 +392,8 @@ enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
         if (bad >= 0) return element_fails(error, spec->tag, bad);
     }
     static enf_status (*const checks[])(checker *) = {
-        check_head,  check_regions,   check_portals, check_cells,    check_planes,
-        check_boxes, check_cut_trees, check_exact,   check_geometry, check_pvs};
+        check_head,      check_regions, check_portals,  check_cells, check_planes, check_boxes,
+        check_cut_trees, check_exact,   check_geometry, check_pvs,   check_sight};
     checker check = {view, error};
     for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
         enf_status status = checks[i](&check);

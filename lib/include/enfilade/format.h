@@ -12,7 +12,7 @@
 
 #define ENF_FILE_MAGIC "ENFILADE"            ///< 8 bytes, no terminating zero in the file
 #define ENF_FILE_MAJOR 2                     ///< a reader refuses another major version
-#define ENF_FILE_MINOR 1                     ///< a reader accepts any minor version of its major one
+#define ENF_FILE_MINOR 2                     ///< a reader accepts any minor version of its major one
 #define ENF_FILE_ALIGNMENT 16                ///< sections begin at multiples of this
 #define ENF_FILE_GRID_MAX 9007199254740992.0 ///< 2^53: no grid coordinate is larger in magnitude
 
@@ -151,6 +151,39 @@ typedef struct enf_file_box {
     int32_t tetrahedron;  ///< -1: not a leaf
 } enf_file_box;
 
+/// The fine grid: what lines of sight and barriers are decided on, exactly. Its coordinates are whole numbers
+/// of grid steps / frame->locate_scale, at most 2^53 in magnitude.
+typedef struct enf_file_sight {
+    double extent; ///< fine grid; no coordinate of a barrier or a clean point is larger in magnitude; > 0
+} enf_file_sight;
+
+/// What a line of sight may meet.
+typedef enum enf_file_barrier_kind {
+    ENF_FILE_BARRIER_WALL,   ///< a clean polygon at a cell; index: its first triangle, or -1
+    ENF_FILE_BARRIER_DETAIL, ///< a triangle that is drawn, but does not cut; index: the triangle
+    ENF_FILE_BARRIER_CRACK,  ///< a sealed crack at a cell; index: -1
+    ENF_FILE_BARRIER_PORTAL, ///< a polygon of a portal; index: the even portal
+    ENF_FILE_BARRIER_KINDS
+} enf_file_barrier_kind;
+
+/// A convex polygon, counter-clockwise from its front. Flat, but for cracks and portals, whose corners are
+/// rounded.
+typedef struct enf_file_barrier {
+    double normal[3];                   ///< towards the front, length 1, rounded
+    int32_t vertex_first, vertex_count; ///< range of barrier_vertices, at least three
+    int32_t kind;                       ///< enf_file_barrier_kind
+    int32_t index;                      ///< of what it is: see the kinds
+} enf_file_barrier;
+
+/// A node of a tree of boxes around barriers, with up to four children. Nodes are stored breadth first: the
+/// inner children of all nodes, in order, are nodes 1, 2, 3 and so on.
+typedef struct enf_file_barrier_node {
+    float bound[3][2][4]; ///< fine grid: per axis the smallest and the largest coordinates of the children
+    int32_t child[4];     ///< >= 0: a node; -1: none; < -1: barrier -2 - child
+} enf_file_barrier_node;
+
+#define ENF_FILE_BARRIER_DEPTH_MAX 96 ///< levels of such a tree
+
 /// A triangle to draw, counter-clockwise from its front.
 typedef struct enf_file_triangle {
     int32_t point[3];     ///< render_points
@@ -267,6 +300,17 @@ typedef struct enf_file_view {
     const int64_t *pvs_offset; ///< cell_count + 1 offsets into pvs_rows
     int64_t pvs_byte_count;
     const uint8_t *pvs_rows; ///< per cell the cells it sees, coded: lib/format/layout.md
+
+    // Lines of sight (all or nothing), fine grid.
+    const enf_file_sight *sight; ///< null: there is none
+    int32_t barrier_count;
+    const enf_file_barrier *barriers;
+    int32_t barrier_vertex_count;
+    const double (*barrier_vertices)[3];
+    int32_t wall_node_count; ///< the tree of all barriers but portals
+    const enf_file_barrier_node *wall_nodes;
+    int32_t portal_node_count; ///< the tree of the portals' polygons
+    const enf_file_barrier_node *portal_nodes;
 
     // What is drawn (all or nothing), world coordinates.
     bool has_geometry;
