@@ -35,11 +35,13 @@ static int side_of_plane(const enf_file_barrier *barrier, const double (*vertice
     return enf_points_orient(vertices[0], vertices[1], vertices[2], point);
 }
 
-/// True if the line passes every edge on the same side, or touches it. `turn`: that side.
+/// True if the line passes every edge on the same side, or touches it; not all of them, as rounding may leave
+/// a polygon without area. `turn`: that side.
 static bool passes_edges(const enf_segment *segment, const double (*vertices)[3], int32_t count, int turn) {
     const double *a = segment->from, *b = segment->to, *last = vertices[count - 1];
     double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     double v[3] = {last[0] - a[0], last[1] - a[1], last[2] - a[2]};
+    bool beside = false;
     for (int32_t k = 0; k < count; k++) {
         const double *next = vertices[k];
         double w[3] = {next[0] - a[0], next[1] - a[1], next[2] - a[2]};
@@ -47,13 +49,16 @@ static bool passes_edges(const enf_segment *segment, const double (*vertices)[3]
                         way[2] * (v[0] * w[1] - v[1] * w[0]);
         if (fabs(volume) > SURE) {
             if ((volume > 0) != (turn > 0)) return false;
-        } else if (enf_points_orient(a, b, last, next) * turn < 0) {
-            return false;
+            beside = true;
+        } else {
+            int side = enf_points_orient(a, b, last, next) * turn;
+            if (side < 0) return false;
+            beside = beside || side > 0;
         }
         last = next;
         for (int i = 0; i < 3; i++) v[i] = w[i];
     }
-    return true;
+    return beside;
 }
 
 bool enf_segment_passes(const enf_file_view *view, const enf_segment *segment,

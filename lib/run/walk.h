@@ -12,6 +12,9 @@
 
 #include <math.h>
 #include <stdint.h>
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
 
 /// Every level leaves at most three children waiting.
 #define ENF_WALK_WAITING_MAX (3 * ENF_FILE_BARRIER_DEPTH_MAX + 4)
@@ -32,9 +35,35 @@ typedef float enf_walk_four __attribute__((vector_size(16)));
 typedef int32_t enf_walk_mask __attribute__((vector_size(16)));
 typedef float enf_walk_anywhere __attribute__((vector_size(16), aligned(4), may_alias));
 
+#if defined(__SSE__)
+static inline enf_walk_four enf_walk_larger(enf_walk_four a, enf_walk_four b) {
+    return _mm_max_ps(a, b);
+}
+
+static inline enf_walk_four enf_walk_smaller(enf_walk_four a, enf_walk_four b) {
+    return _mm_min_ps(a, b);
+}
+
+static inline unsigned enf_walk_bits(enf_walk_mask mask) {
+    return (unsigned)_mm_movemask_ps((enf_walk_four)mask);
+}
+#else
 static inline enf_walk_four enf_walk_choose(enf_walk_mask which, enf_walk_four yes, enf_walk_four no) {
     return (enf_walk_four)((which & (enf_walk_mask)yes) | (~which & (enf_walk_mask)no));
 }
+
+static inline enf_walk_four enf_walk_larger(enf_walk_four a, enf_walk_four b) {
+    return enf_walk_choose(a > b, a, b);
+}
+
+static inline enf_walk_four enf_walk_smaller(enf_walk_four a, enf_walk_four b) {
+    return enf_walk_choose(a < b, a, b);
+}
+
+static inline unsigned enf_walk_bits(enf_walk_mask mask) {
+    return (unsigned)((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
+}
+#endif
 
 static inline void enf_walk_begin(enf_walk *walk, const enf_file_view *view, const enf_segment *segment,
                                   const enf_file_barrier_node *nodes, int32_t node_count) {
@@ -59,32 +88,27 @@ static inline void enf_walk_shorten(enf_walk *walk, double share) {
     if (most < walk->most) walk->most = most;
 }
 
-/// Where the segment enters each child of a node; more than `most` if it does not.
-static inline enf_walk_four enf_walk_enter(const enf_walk *walk, const enf_file_barrier_node *node) {
+/// Puts the children of a node that the segment meets on the stack, the nearest on top.
+static inline void enf_walk_open(enf_walk *walk, int32_t number) {
+    const enf_file_barrier_node *node = &walk->nodes[number];
     enf_walk_four begin = {0, 0, 0, 0}, end = {walk->most, walk->most, walk->most, walk->most};
     for (int a = 0; a < 3; a++) {
         enf_walk_four low = *(const enf_walk_anywhere *)node->bound[a][walk->backward[a]];
         enf_walk_four high = *(const enf_walk_anywhere *)node->bound[a][1 - walk->backward[a]];
-        low = (low - walk->origin[a]) * walk->inverse[a];
-        high = (high - walk->origin[a]) * walk->inverse[a];
-        begin = enf_walk_choose(low > begin, low, begin);
-        end = enf_walk_choose(high < end, high, end);
+        begin = enf_walk_larger((low - walk->origin[a]) * walk->inverse[a], begin);
+        end = enf_walk_smaller((high - walk->origin[a]) * walk->inverse[a], end);
     }
-    const enf_walk_four never = {2, 2, 2, 2};
-    return enf_walk_choose(begin <= end, begin, never);
-}
-
-static inline void enf_walk_open(enf_walk *walk, int32_t number) {
-    const enf_file_barrier_node *node = &walk->nodes[number];
-    enf_walk_four begin = enf_walk_enter(walk, node);
+    float begins[4];
+    *(enf_walk_anywhere *)begins = begin;
     int first = walk->count;
-    for (int k = 0; k < 4; k++) {
-        if (!(begin[k] <= 1) || node->child[k] == -1) continue;
+    for (unsigned met = enf_walk_bits(begin <= end); met; met &= met - 1) {
+        int k = __builtin_ctz(met);
+        if (node->child[k] == -1) continue;
         int at = walk->count++;
-        for (; at > first && walk->waiting[at - 1].begin < begin[k]; at--)
+        for (; at > first && walk->waiting[at - 1].begin < begins[k]; at--)
             walk->waiting[at] = walk->waiting[at - 1];
         walk->waiting[at].child = node->child[k];
-        walk->waiting[at].begin = begin[k];
+        walk->waiting[at].begin = begins[k];
     }
 }
 

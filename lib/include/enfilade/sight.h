@@ -58,6 +58,73 @@ typedef struct enf_sight {
 ENF_API enf_status enf_sight_between(const enf_world *world, const enf_instance *instance,
                                      const enf_sight_query *query, enf_sight *sight, enf_error *error);
 
+/// A ray. All zero but `size`, `origin` and `direction` is the default.
+typedef struct enf_ray {
+    size_t size;            ///< sizeof(enf_ray)
+    double origin[3];       ///< world
+    double direction[3];    ///< world, of any length but 0
+    double length;          ///< world units; 0 or less: without end
+    const enf_place *place; ///< of the origin, if that is known; or null
+    int32_t depth_max;      ///< at most so many portals that transform; 0: 16
+    int32_t *portals;       ///< room for the portals passed, or null
+    int32_t portal_capacity;
+    bool ignores_detail;
+} enf_ray;
+
+typedef enum enf_ray_end {
+    ENF_RAY_NOTHING = 0, ///< it went its length, or left the world
+    ENF_RAY_TRIANGLE,    ///< it hit what is drawn, or a sealed crack (triangle -1)
+    ENF_RAY_DOOR,        ///< it hit a portal that is closed there
+    ENF_RAY_TOO_DEEP,    ///< it would pass more portals that transform than allowed
+    ENF_RAY_NOWHERE      ///< it begins in no cell
+} enf_ray_end;
+
+typedef struct enf_ray_hit {
+    enf_ray_end end;
+    double point[3];     ///< where it ended, world
+    double direction[3]; ///< the way it went in the end, turned and scaled by transforms; 1 long at first
+    double distance; ///< from the origin along the ray; what lies behind a transform that scales is measured
+                     ///< as before it
+    int32_t triangle;     ///< -1: none
+    int32_t portal;       ///< the closed one, or the one that is one too many; -1: none
+    int32_t cell;         ///< where it ended
+    int32_t depth;        ///< portals that transform, passed
+    int32_t portal_count; ///< portals passed, in order; may be more than the capacity
+} enf_ray_hit;
+
+/// The first thing that a ray meets, from cell to cell through portals; those that transform turn the ray.
+/// Each straight part is a segment of the fine grid and meets walls by the rule above; distances are rounded.
+/// Of a file without geometry `triangle` is -1. ENF_BAD_INPUT: the file has no sight part. ENF_BAD_USAGE: no
+/// direction, or something is not finite (the length may be infinite).
+ENF_API enf_status enf_ray_cast(const enf_world *world, const enf_instance *instance, const enf_ray *ray,
+                                enf_ray_hit *hit, enf_error *error);
+
+/// A step of a point that moves. All zero but `size`, `place`, `from` and `to` is the default.
+typedef struct enf_step {
+    size_t size;           ///< sizeof(enf_step)
+    enf_place place;       ///< where it is, by the step before or enf_world_locate
+    double from[3], to[3]; ///< world, a straight way
+    int32_t depth_max;     ///< at most so many portals that transform; 0: 16
+    int32_t *portals;      ///< room for the portals passed, or null
+    int32_t portal_capacity;
+} enf_step;
+
+typedef struct enf_stepped {
+    enf_place place;   ///< where it is now
+    double point[3];   ///< `to`, or what transforms have made of it, or where it was stopped
+    double matrix[12]; ///< from the world where it was to the world where it is: all transforms passed, 3 x 4
+    int32_t portal;    ///< the one that stopped it, since closed or one too many; -1: none
+    int32_t depth;     ///< portals that transform, passed
+    int32_t portal_count; ///< portals passed, in order; may be more than the capacity
+} enf_stepped;
+
+/// Follows a moving point through portals, without a search: the way within a fine cell costs one point
+/// location with a hint. Walls do not stop it (what stops a body is the caller's to say); doors do. Outside
+/// of all cells it only locates. The portals passed are those of a chain of cells, as for enf_sight_between.
+/// ENF_BAD_INPUT: the file has no sight part.
+ENF_API enf_status enf_world_follow(const enf_world *world, const enf_instance *instance,
+                                    const enf_step *step, enf_stepped *stepped, enf_error *error);
+
 #ifdef __cplusplus
 }
 #endif
