@@ -19,7 +19,8 @@ __extension__ typedef __int128 wide;
 typedef struct sighter {
     enf_image *image;
     const enf_build *build;
-    double scale, extent;
+    double scale;
+    enf_file_sight sight;
 
     enf_file_barrier *barriers;
     size_t barrier_count, barrier_capacity;
@@ -43,13 +44,22 @@ static bool add_barrier(sighter *s, const double normal[3], int32_t kind, int32_
     return true;
 }
 
+/// A point of the fine grid.
+static void hold(sighter *s, const double at[3]) {
+    for (int a = 0; a < 3; a++) {
+        s->sight.box_min[a] = fmin(s->sight.box_min[a], at[a]);
+        s->sight.box_max[a] = fmax(s->sight.box_max[a], at[a]);
+        s->sight.extent = fmax(s->sight.extent, fabs(at[a]));
+    }
+}
+
 /// A point in grid steps.
 static void add_vertex(sighter *s, const double grid[3]) {
     double *out = s->vertices[s->vertex_count++];
     for (int a = 0; a < 3; a++) {
         out[a] = fmax(-ENF_FILE_GRID_MAX, fmin(nearbyint(grid[a] * s->scale), ENF_FILE_GRID_MAX)) + 0.0;
-        s->extent = fmax(s->extent, fabs(out[a]));
     }
+    hold(s, out);
 }
 
 /// u x v with length 1: exact up to the last rounding.
@@ -208,8 +218,8 @@ static enf_barrier_box box_around(const sighter *s, int32_t barrier) {
             low = fmin(low, s->vertices[at->vertex_first + k][a]);
             high = fmax(high, s->vertices[at->vertex_first + k][a]);
         }
-        box.min[a] = round_down(low - PADDING * s->extent);
-        box.max[a] = round_up(high + PADDING * s->extent);
+        box.min[a] = round_down(low - PADDING * s->sight.extent);
+        box.max[a] = round_up(high + PADDING * s->sight.extent);
     }
     return box;
 }
@@ -251,12 +261,17 @@ static bool make_trees(sighter *s, enf_barrier_tree *walls, enf_barrier_tree *po
     return good;
 }
 
-/// No clean point is larger.
-static void find_extent(sighter *s) {
+static void hold_points(sighter *s) {
     const enf_file_view *view = &s->image->view;
-    s->extent = 1;
+    s->sight.extent = 1;
     for (int32_t i = 0; i < view->point_count; i++) {
-        for (int a = 0; a < 3; a++) s->extent = fmax(s->extent, fabs(view->points[i][a]) * s->scale);
+        double at[3];
+        for (int a = 0; a < 3; a++) at[a] = view->points[i][a] * s->scale;
+        if (i == 0) {
+            memcpy(s->sight.box_min, at, sizeof at);
+            memcpy(s->sight.box_max, at, sizeof at);
+        }
+        hold(s, at);
     }
 }
 
@@ -264,7 +279,7 @@ static bool set_view(sighter *s, const enf_barrier_tree *walls, const enf_barrie
     enf_file_view *view = &s->image->view;
     enf_file_sight *sight = enf_image_new(s->image, 1, sizeof *sight);
     if (!sight) return false;
-    sight->extent = s->extent;
+    *sight = s->sight;
     view->sight = sight;
     view->barriers = s->barriers;
     view->barrier_count = (int32_t)s->barrier_count;
@@ -280,7 +295,7 @@ static bool set_view(sighter *s, const enf_barrier_tree *walls, const enf_barrie
 enf_status enf_image_sight(enf_image *image, const enf_build *build, enf_error *error) {
     sighter s = {.image = image, .build = build, .scale = image->view.frame->locate_scale};
     enf_barrier_tree walls = {NULL, 0}, portals = {NULL, 0};
-    find_extent(&s);
+    hold_points(&s);
     bool good = add_walls(&s) && add_details(&s);
     s.wall_count = (int32_t)s.barrier_count;
     good = good && add_portals(&s) && make_trees(&s, &walls, &portals) && set_view(&s, &walls, &portals);

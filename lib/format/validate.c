@@ -374,8 +374,11 @@ static enf_status check_barrier_tree(checker *check, const char *tag, const enf_
 static enf_status check_sight(checker *check) {
     const enf_file_view *view = check->view;
     if (!view->sight) return ENF_OK;
-    if (!(view->sight->extent > 0 && view->sight->extent <= ENF_FILE_GRID_MAX))
-        return element_fails(check->error, "SIGHT", 0);
+    const enf_file_sight *sight = view->sight;
+    bool good = sight->extent >= 1 && sight->extent <= ENF_FILE_GRID_MAX;
+    for (int a = 0; a < 3; a++)
+        good = good && fabs(sight->box_min[a]) <= sight->extent && fabs(sight->box_max[a]) <= sight->extent;
+    if (!good) return element_fails(check->error, "SIGHT", 0);
     for (int32_t i = 0; i < view->barrier_count; i++) {
         if (!barrier_fits(view, &view->barriers[i])) return element_fails(check->error, "BARRIER", i);
     }

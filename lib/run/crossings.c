@@ -42,13 +42,12 @@ void enf_crossings_find(enf_crossings *crossings, const enf_file_view *view, con
     int32_t number;
     while ((number = enf_walk_next(&walk)) >= 0) {
         const enf_file_barrier *barrier = &view->barriers[number];
-        enf_crossing crossing;
-        bool forward;
+        enf_meeting meeting;
         if (barrier->kind != ENF_FILE_BARRIER_PORTAL) continue;
-        if (!enf_segment_passes(view, segment, barrier, &crossing.share, &forward)) continue;
-        if (crossing.share < begin || crossing.share >= crossings->end) continue;
-        crossing.portal = barrier->index + !forward;
-        insert(crossings, crossing);
+        if (!enf_segment_meets(view, segment, barrier, &meeting)) continue;
+        if (meeting.share < begin || meeting.share >= crossings->end) continue;
+        insert(crossings,
+               (enf_crossing){meeting.share, barrier->index + !meeting.from_front, meeting.touches});
         enf_walk_shorten(&walk, crossings->end);
     }
     if (crossings->end < end) end_between(crossings);

@@ -10,6 +10,7 @@
 typedef struct enf_crossing {
     double share;   ///< of the segment
     int32_t portal; ///< the one that leads on
+    bool touches;   ///< an end of the segment lies on it: it counts where that end's cell says so
 } enf_crossing;
 
 typedef struct enf_crossings {

@@ -39,7 +39,7 @@ static wall_hit find_nearest(const caster *c) {
         const enf_file_barrier *barrier = &c->view->barriers[number];
         double share;
         if (barrier->kind == ENF_FILE_BARRIER_DETAIL && c->ray->ignores_detail) continue;
-        if (!enf_segment_passes(c->view, &c->way.segment, barrier, &share, NULL)) continue;
+        if (!enf_segment_passes(c->view, &c->way.segment, barrier, &share)) continue;
         if (share > nearest.share || (share == nearest.share && number > nearest.barrier)) continue;
         nearest = (wall_hit){number, share};
         enf_walk_shorten(&walk, share);
@@ -86,13 +86,13 @@ static int32_t find_triangle(const enf_file_view *view, const enf_file_barrier *
 // --- Legs
 // --------------------------------------------------------------------------------------------------------
 
-/// How far it is to the border of what the sight part covers, along a direction, in lengths of it.
+/// How far it is to the border of the world's box, along a direction, in lengths of it.
 static double way_out(const enf_file_view *view, const double from[3], const double direction[3]) {
     double scale = view->frame->locate_scale, way = INFINITY, start[3], along[3];
     enf_view_to_grid(view, from, start);
     enf_view_to_grid(view, direction, along);
     for (int a = 0; a < 3; a++) {
-        double border = (along[a] < 0 ? -1 : 1) * view->sight->extent;
+        double border = along[a] < 0 ? view->sight->box_min[a] : view->sight->box_max[a];
         if (along[a] != 0) way = fmin(way, (border - start[a] * scale) / (along[a] * scale));
     }
     return way;

@@ -35,6 +35,11 @@ static int side_of_plane(const enf_file_barrier *barrier, const double (*vertice
     return enf_points_orient(vertices[0], vertices[1], vertices[2], point);
 }
 
+static double share_of(double from_height, double to_height) {
+    double height = fabs(from_height), whole = height + fabs(to_height);
+    return whole > 0 ? height / whole : 0.5;
+}
+
 /// True if the line passes every edge on the same side, or touches it; not all of them, as rounding may leave
 /// a polygon without area. `turn`: that side.
 static bool passes_edges(const enf_segment *segment, const double (*vertices)[3], int32_t count, int turn) {
@@ -62,18 +67,27 @@ static bool passes_edges(const enf_segment *segment, const double (*vertices)[3]
 }
 
 bool enf_segment_passes(const enf_file_view *view, const enf_segment *segment,
-                        const enf_file_barrier *barrier, double *share, bool *from_front) {
+                        const enf_file_barrier *barrier, double *share) {
     const double(*vertices)[3] = view->barrier_vertices + barrier->vertex_first;
     double from_height, to_height;
     int from = side_of_plane(barrier, vertices, segment->from, &from_height);
     if (from == 0) return false;
     int to = side_of_plane(barrier, vertices, segment->to, &to_height);
-    if (from * to >= 0) return false;
-    if (!passes_edges(segment, vertices, barrier->vertex_count, -from)) return false;
-    if (from_front) *from_front = from > 0;
-    if (share) {
-        double height = fabs(from_height), whole = height + fabs(to_height);
-        *share = whole > 0 ? height / whole : 0.5;
-    }
+    if (from * to >= 0 || !passes_edges(segment, vertices, barrier->vertex_count, -from)) return false;
+    if (share) *share = share_of(from_height, to_height);
+    return true;
+}
+
+bool enf_segment_meets(const enf_file_view *view, const enf_segment *segment, const enf_file_barrier *barrier,
+                       enf_meeting *meeting) {
+    const double(*vertices)[3] = view->barrier_vertices + barrier->vertex_first;
+    double from_height, to_height;
+    int from = side_of_plane(barrier, vertices, segment->from, &from_height);
+    int to = side_of_plane(barrier, vertices, segment->to, &to_height);
+    if (from == to) return false;
+    meeting->from_front = from > to;
+    if (!passes_edges(segment, vertices, barrier->vertex_count, from > to ? -1 : 1)) return false;
+    meeting->touches = from == 0 || to == 0;
+    meeting->share = from == 0 ? 0 : to == 0 ? 1 : share_of(from_height, to_height);
     return true;
 }

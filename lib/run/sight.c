@@ -16,7 +16,7 @@ static int32_t find_wall(const enf_file_view *view, const enf_segment *segment, 
     while ((number = enf_walk_next(&walk)) >= 0) {
         const enf_file_barrier *barrier = &view->barriers[number];
         if (barrier->kind == ENF_FILE_BARRIER_DETAIL && !with_detail) continue;
-        if (enf_segment_passes(view, segment, barrier, NULL, NULL)) return number;
+        if (enf_segment_passes(view, segment, barrier, NULL)) return number;
     }
     return -1;
 }

@@ -29,6 +29,7 @@ static bool is_shut(const enf_way *way, const enf_crossing *crossing, const enf_
 static int32_t find_shut(const enf_way *way, const enf_crossings *crossings) {
     int32_t i = 0;
     for (; i < crossings->count; i++) {
+        if (crossings->list[i].touches) continue;
         enf_passage passage = enf_instance_passage(way->instance, way->view, crossings->list[i].portal);
         if (is_shut(way, &crossings->list[i], &passage)) break;
     }
@@ -47,15 +48,16 @@ static enf_way_end end_at(enf_way_outcome outcome, const enf_crossing *crossing)
 /// Goes along the chain, up to the crossing that is shut.
 static enf_way_end follow_chain(const enf_way *way, const enf_crossings *crossings, const enf_chain *chain,
                                 int32_t shut, int32_t *cell, enf_passed *passed) {
-    bool may_lead = enf_instance_is_changed(way->instance);
+    bool may_change = enf_instance_is_changed(way->instance);
     for (int32_t i = 0; i < chain->count && chain->links[i] < shut; i++) {
         const enf_crossing *crossing = &crossings->list[chain->links[i]];
-        note(passed, crossing->portal);
-        if (may_lead) {
-            enf_way_end led = end_at(ENF_WAY_LED, crossing);
+        enf_way_end led = end_at(ENF_WAY_LED, crossing);
+        if (may_change) {
             led.passage = enf_instance_passage(way->instance, way->view, crossing->portal);
-            if (led.passage.matrix && led.passage.to >= 0) return led;
+            if (is_shut(way, crossing, &led.passage)) return end_at(ENF_WAY_SHUT, crossing);
         }
+        note(passed, crossing->portal);
+        if (led.passage.matrix) return led;
         *cell = way->view->portals[crossing->portal].to;
     }
     if (shut < crossings->count) return end_at(ENF_WAY_SHUT, &crossings->list[shut]);

@@ -38,8 +38,9 @@ typedef struct enf_way_end {
 /// Sets the ends. False if one is beyond the fine grid, or not finite.
 bool enf_way_set(enf_way *way, const double from[3], const double to[3]);
 
-/// Passes from *cell on, up to a share of the segment. A portal that is shut ends the way wherever it lies on
-/// it; one that leads elsewhere only as part of the chain of cells, as its twin may lie in the same place.
+/// Passes from *cell on, up to a share of the segment. A portal that is shut ends the way wherever it lies
+/// between its ends. One that an end lies on, or that leads elsewhere, does so only as part of the chain of
+/// cells: an end is on one side of a door, and twins lie in the same place.
 /// *cell: the last one before the end. `goal`: the cell of the end if that is known, or -1.
 enf_way_end enf_way_pass(const enf_way *way, double end, int32_t *cell, int32_t goal, enf_passed *passed);
 

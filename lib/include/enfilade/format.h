@@ -154,7 +154,8 @@ typedef struct enf_file_box {
 /// The fine grid: what lines of sight and barriers are decided on, exactly. Its coordinates are whole numbers
 /// of grid steps / frame->locate_scale, at most 2^53 in magnitude.
 typedef struct enf_file_sight {
-    double extent; ///< fine grid; no coordinate of a barrier or a clean point is larger in magnitude; > 0
+    double box_min[3], box_max[3]; ///< around all barriers and clean points, fine grid
+    double extent;                 ///< none of these is larger in magnitude; at least 1
 } enf_file_sight;
 
 /// What a line of sight may meet.

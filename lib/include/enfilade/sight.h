@@ -14,6 +14,7 @@
 // - a polygon does not stop segments that begin or end in its plane, or run in it: two points of a flat floor
 //   see each other along it, and an eye on a wall sees the room;
 // - the answer from a to b is that from b to a.
+// A door is like a wall, but for ends that lie on it: they are on the side of the cell that they are in.
 //
 // Boxes around walls (a tree of four children a node) find the few that a line comes near: C. Ericson,
 // "Real-Time Collision Detection", 2004, chapter 6. No call allocates; any number of threads may call at
