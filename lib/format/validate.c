@@ -348,9 +348,10 @@ static bool barrier_fits(const enf_file_view *view, const enf_file_barrier *barr
            in_range(barrier->index, is_portal ? 0 : -1, end) && !(is_portal && barrier->index % 2);
 }
 
-/// Nodes are referred to once each, level by level, so every walk is one of a tree that is not too deep.
+/// Nodes are referred to once each, level by level, so every walk is one of a tree that is not too deep; and
+/// the corners of all barriers in it, counted as often as they are in it, are no more than there are.
 static enf_status check_barrier_tree(checker *check, const char *tag, const enf_file_barrier_node *nodes,
-                                     int32_t count) {
+                                     int32_t count, int64_t *vertices) {
     int32_t next = 1, level_end = 1, levels = 1;
     for (int32_t i = 0; i < count; i++) {
         if (i == level_end) {
@@ -362,6 +363,8 @@ static enf_status check_barrier_tree(checker *check, const char *tag, const enf_
             bool good = child < 0 ? child == -1 || -2 - child < check->view->barrier_count : child == next;
             if (!good) return element_fails(check->error, tag, i);
             next += child >= 0;
+            if (child < -1) *vertices += check->view->barriers[-2 - child].vertex_count;
+            if (*vertices > check->view->barrier_vertex_count) return element_fails(check->error, tag, i);
         }
         if (next <= i + 1 && i + 1 < count)
             return element_fails(check->error, tag, i); // the rest hangs loose
@@ -382,9 +385,11 @@ static enf_status check_sight(checker *check) {
     for (int32_t i = 0; i < view->barrier_count; i++) {
         if (!barrier_fits(view, &view->barriers[i])) return element_fails(check->error, "BARRIER", i);
     }
-    enf_status status = check_barrier_tree(check, "WALLTREE", view->wall_nodes, view->wall_node_count);
+    int64_t vertices = 0;
+    enf_status status =
+        check_barrier_tree(check, "WALLTREE", view->wall_nodes, view->wall_node_count, &vertices);
     if (status) return status;
-    return check_barrier_tree(check, "PORTTREE", view->portal_nodes, view->portal_node_count);
+    return check_barrier_tree(check, "PORTTREE", view->portal_nodes, view->portal_node_count, &vertices);
 }
 
 enf_status enf_view_check(const enf_file_view *view, enf_error *error) {

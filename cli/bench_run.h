@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tables of the runtime: one file each. Every one takes the words after its name and returns the exit
+// status.
+#ifndef ENF_CLI_BENCH_RUN_H
+#define ENF_CLI_BENCH_RUN_H
+
+/// Points with and without a hint, and steps.
+int cli_bench_run_locate(int argc, char **argv);
+
+/// Lines of sight and rays, by the portals they pass.
+int cli_bench_run_sight(int argc, char **argv);
+
+#endif
