@@ -505,6 +505,7 @@ static enf_status fill_image(enf_image *image, const enf_build *build, const cha
     if (!status) status = make_cell_portals(image, error);
     if (!status) status = enf_image_neighbours(image, error);
     if (!status) status = enf_image_boxes(image, error);
+    if (!status) status = enf_image_start(image, error);
     if (!status) status = enf_image_draw(image, build, strings, error);
     if (!status) status = enf_image_sight(image, build, error);
     return status;

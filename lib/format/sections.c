@@ -27,6 +27,8 @@ const enf_section_spec enf_section_specs[] = {
     SECTION("CELLPORT", CORE,     CELL_PORTALS,       0, INDEX,     PORTALS,       0, cell_portals),
 
     SECTION("BOX",      CORE,     BOXES,              0, NONE,      NONE,          0, boxes),
+    SECTION("BRICKS",   START,    NONE,               0, NONE,      NONE,          0, start),
+    SECTION("BRICKTET", START,    STARTS,             0, INDEX,     TETRAHEDRA,   -1, start_tetrahedra),
     SECTION("POINT",    CORE,     POINTS,             0, GRID,      NONE,          0, points),
     SECTION("PLANE",    CORE,     PLANES,             0, NONE,      NONE,          0, planes),
     SECTION("TET",      CORE,     TETRAHEDRA,         0, INDEX,     POINTS,        0, tetrahedra),
@@ -130,6 +132,7 @@ static const struct {
     [ENF_DIMENSION_GROUPS] = COUNT(group_count),
     [ENF_DIMENSION_MATERIALS] = COUNT(material_count),
     [ENF_DIMENSION_PVS_BYTES] = COUNT(pvs_byte_count),
+    [ENF_DIMENSION_STARTS] = COUNT(start_count),
     [ENF_DIMENSION_BARRIERS] = COUNT(barrier_count),
     [ENF_DIMENSION_BARRIER_VERTICES] = COUNT(barrier_vertex_count),
     [ENF_DIMENSION_WALL_NODES] = COUNT(wall_node_count),

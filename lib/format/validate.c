@@ -256,6 +256,19 @@ static enf_status check_boxes(checker *check) {
     return ENF_OK;
 }
 
+static enf_status check_start(checker *check) {
+    const enf_file_start *start = check->view->start;
+    if (!start) return ENF_OK;
+    int64_t bricks = 1;
+    bool good = all_finite(start->origin, 3) && all_finite(start->per_step, 3);
+    for (int a = 0; a < 3 && good; a++) {
+        good = start->per_step[a] >= 0 && start->count[a] >= 1;
+        if (good) bricks *= start->count[a]; // at most 2^31 before, so this does not overflow
+        good = good && bricks <= check->view->start_count;
+    }
+    return good && bricks == check->view->start_count ? ENF_OK : element_fails(check->error, "BRICKS", 0);
+}
+
 /// Notes a reference from a root or node. Where a node is referred to by roots only, or by one other node
 /// only, a walk from a root can meet no node twice, so it ends.
 static bool note_child(const enf_file_view *view, uint8_t *referred, int32_t child, bool from_root) {
@@ -400,8 +413,8 @@ enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
         if (bad >= 0) return element_fails(error, spec->tag, bad);
     }
     static enf_status (*const checks[])(checker *) = {
-        check_head,      check_regions, check_portals,  check_cells, check_planes, check_boxes,
-        check_cut_trees, check_exact,   check_geometry, check_pvs,   check_sight};
+        check_head,  check_regions,   check_portals, check_cells,    check_planes, check_boxes,
+        check_start, check_cut_trees, check_exact,   check_geometry, check_pvs,    check_sight};
     checker check = {view, error};
     for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
         enf_status status = checks[i](&check);

@@ -6,6 +6,7 @@
 
 #include "base/exact.h"
 #include "format/frame.h"
+#include "format/round.h"
 
 #include <math.h>
 
@@ -20,7 +21,7 @@ bool enf_fine_point(const enf_file_view *view, const double world[3], double fin
     for (int a = 0; a < 3; a++) {
         double scaled = grid[a] * view->frame->locate_scale;
         if (!(fabs(scaled) <= ENF_FILE_GRID_MAX)) return false;
-        fine[a] = nearbyint(scaled);
+        fine[a] = enf_round(scaled);
     }
     return true;
 }

@@ -151,6 +151,15 @@ typedef struct enf_file_box {
     int32_t tetrahedron;  ///< -1: not a leaf
 } enf_file_box;
 
+/// A box of equal bricks, count[0] * count[1] * count[2] of them; the last axis runs fastest. Each knows a
+/// tetrahedron from which it is not far to the points in it.
+typedef struct enf_file_start {
+    double origin[3];   ///< grid steps
+    double per_step[3]; ///< bricks per grid step, >= 0
+    int32_t count[3];   ///< at least 1 each
+    int32_t reserved;   ///< 0
+} enf_file_start;
+
 /// The fine grid: what lines of sight and barriers are decided on, exactly. Its coordinates are whole numbers
 /// of grid steps / frame->locate_scale, at most 2^53 in magnitude.
 typedef struct enf_file_sight {
@@ -251,6 +260,9 @@ typedef struct enf_file_view {
     const int32_t *fine_cell; ///< the cell it went into; -1: discarded
     int32_t box_count;
     const enf_file_box *boxes;
+    const enf_file_start *start; ///< null: there is none, nor start_tetrahedra
+    int32_t start_count;
+    const int32_t *start_tetrahedra; ///< per brick the tetrahedron that holds its middle, or -1
 
     // The exact complex (all or nothing); the arrays of enf_complex and enf_mesh, see there.
     bool has_exact;
