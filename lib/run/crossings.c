@@ -39,6 +39,7 @@ void enf_crossings_find(enf_crossings *crossings, const enf_file_view *view, con
     crossings->end = end;
     enf_walk walk;
     enf_walk_begin(&walk, view, segment, view->portal_nodes, view->portal_node_count);
+    enf_walk_shorten(&walk, end);
     int32_t number;
     while ((number = enf_walk_next(&walk)) >= 0) {
         const enf_file_barrier *barrier = &view->barriers[number];
