@@ -40,7 +40,7 @@ static bool follow_leg(const enf_world *world, enf_way *way, const enf_step *ste
     int32_t cell = stepped->place.cell, hint = place.tetrahedron;
     memcpy(stepped->point, way->to, sizeof stepped->point);
     stepped->place = place;
-    if (near || cell < 0 || (!wanted && !enf_instance_is_changed(way->instance))) return false;
+    if (near || cell < 0 || (!wanted && !enf_way_meets_change(way))) return false;
 
     enf_way_end end = enf_way_pass(way, ENF_WAY_WHOLE, &cell, place.cell, passed);
     if (end.outcome == ENF_WAY_FREE) return false;

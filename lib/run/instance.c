@@ -143,6 +143,16 @@ bool enf_instance_is_changed(const enf_instance *instance) {
            (instance->transforms || atomic_load_explicit(&instance->touched, memory_order_acquire));
 }
 
+bool enf_instance_pair_is_changed(const enf_instance *instance, int32_t portal) {
+    int32_t pair = portal / 2;
+    if (atomic_load_explicit(&instance->doors[pair].version, memory_order_relaxed) != 0 &&
+        read_door(&instance->doors[pair]).state != ENF_DOOR_OPEN)
+        return true;
+    for (int32_t i = 2 * pair; instance->transforms && i < 2 * pair + 2; i++)
+        if (instance->transforms[i] && instance->transforms[i]->used) return true;
+    return false;
+}
+
 enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal) {
     enf_passage passage = {.to = view->portals[portal].to};
     if (!instance) return passage;

@@ -19,4 +19,7 @@ enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_vi
 /// Null: false.
 bool enf_instance_is_changed(const enf_instance *instance);
 
+/// The same of one pair of portals; false: it is as it was compiled.
+bool enf_instance_pair_is_changed(const enf_instance *instance, int32_t portal);
+
 #endif

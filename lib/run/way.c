@@ -2,6 +2,7 @@
 #include "run/way.h"
 
 #include "run/crossings.h"
+#include "run/walk.h"
 
 bool enf_way_set(enf_way *way, const double from[3], const double to[3]) {
     for (int a = 0; a < 3; a++) {
@@ -34,6 +35,21 @@ static int32_t find_shut(const enf_way *way, const enf_crossings *crossings) {
         if (is_shut(way, &crossings->list[i], &passage)) break;
     }
     return i;
+}
+
+bool enf_way_meets_change(const enf_way *way) {
+    if (!enf_instance_is_changed(way->instance)) return false;
+    enf_walk walk;
+    enf_walk_begin(&walk, way->view, &way->segment, way->view->portal_nodes, way->view->portal_node_count);
+    int32_t number;
+    while ((number = enf_walk_next(&walk)) >= 0) {
+        const enf_file_barrier *barrier = &way->view->barriers[number];
+        enf_meeting meeting;
+        if (barrier->kind != ENF_FILE_BARRIER_PORTAL) continue;
+        if (!enf_instance_pair_is_changed(way->instance, barrier->index)) continue;
+        if (enf_segment_meets(way->view, &way->segment, barrier, &meeting)) return true;
+    }
+    return false;
 }
 
 static void note(enf_passed *passed, int32_t portal) {

@@ -38,6 +38,10 @@ typedef struct enf_way_end {
 /// Sets the ends. False if one is beyond the fine grid, or not finite.
 bool enf_way_set(enf_way *way, const double from[3], const double to[3]);
 
+/// Does the way meet a portal that is not open, or leads elsewhere? If not, it is the same as without an
+/// instance.
+bool enf_way_meets_change(const enf_way *way);
+
 /// Passes from *cell on, up to a share of the segment. A portal that is shut ends the way wherever it lies
 /// between its ends. One that an end lies on, or that leads elsewhere, does so only as part of the chain of
 /// cells: an end is on one side of a door, and twins lie in the same place.
