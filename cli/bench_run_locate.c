@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POINTS = 4000, RUNS = 9, TRIES = 10000000 };
+enum { POINTS = 4000, RUNS = 9, TRIES = 10000000, WALK = 32 };
 
 typedef struct spot {
     double at[3], to[3]; ///< a step of a thousandth of the world's size, or less
@@ -53,7 +53,26 @@ static void choose_spots(bench *b) {
     }
 }
 
-typedef enum question { SEARCH_INSIDE, SEARCH_ANYWHERE, HINTED_SAME, HINTED_NEAR, STEP, QUESTIONS } question;
+typedef enum question {
+    SEARCH_INSIDE,
+    SEARCH_ANYWHERE,
+    HINTED_SAME,
+    HINTED_NEAR,
+    WALKED,
+    STEP,
+    QUESTIONS
+} question;
+
+/// In small steps, each with the hint of the one before.
+static void walk(const bench *b, const spot *spot) {
+    int32_t hint = spot->place.tetrahedron;
+    for (int n = 0; n < WALK; n++) {
+        double at[3];
+        for (int a = 0; a < 3; a++) at[a] = spot->at[a] + (spot->to[a] - spot->at[a]) * n / WALK;
+        enf_place place = enf_world_locate(b->world, at, hint);
+        if (place.tetrahedron >= 0) hint = place.tetrahedron;
+    }
+}
 
 static void ask(const bench *b, int i, question question) {
     const spot *spot = &b->inside[i];
@@ -61,6 +80,7 @@ static void ask(const bench *b, int i, question question) {
     if (question == SEARCH_ANYWHERE) enf_world_locate(b->world, b->anywhere[i].at, -1);
     if (question == HINTED_SAME) enf_world_locate(b->world, spot->at, spot->place.tetrahedron);
     if (question == HINTED_NEAR) enf_world_locate(b->world, spot->to, spot->place.tetrahedron);
+    if (question == WALKED) walk(b, spot);
     if (question != STEP) return;
     enf_step step = {.size = sizeof step, .place = spot->place};
     enf_stepped stepped;
@@ -77,7 +97,7 @@ static double measure(const bench *b, question question) {
         for (int i = 0; i < b->count; i++) ask(b, i, question);
         least = fmin(least, enf_timer_now() - begin);
     }
-    return least / b->count * 1e9;
+    return least / b->count / (question == WALKED ? WALK : 1) * 1e9;
 }
 
 static int bench_world(const char *path) {
@@ -114,7 +134,8 @@ int cli_bench_run_locate(int argc, char **argv) {
         .summary =
             "Nanoseconds per point: in cells (inside) and all over the world's box (anywhere) without a\n"
             "hint; in cells with its own tetrahedron as the hint (same), a thousandth of the world's size\n"
-            "away from where the hint is from (near), and that as a step.",
+            "away from where the hint is from (near), on that way in 32 steps, each with the hint of the\n"
+            "one before (walked), and on it as one step of a moving point (step).",
         .options = options,
         .operands_min = 1,
         .operands_max = INT_MAX,
@@ -123,8 +144,8 @@ int cli_bench_run_locate(int argc, char **argv) {
     int status = cli_parse(&syntax, argc, argv, &operands);
     if (status < 0) {
         status = ENF_OK;
-        printf("%-24s %8s %8s %8s %8s %8s %8s %8s %8s\n", "world", "cells", "tetra", "fine", "inside",
-               "anywhere", "same", "near", "step");
+        printf("%-24s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "world", "cells", "tetra", "fine", "inside",
+               "anywhere", "same", "near", "walked", "step");
         for (int i = 0; i < (int)operands.count && !status; i++) status = bench_world(operands.items[i]);
     }
     free(operands.items);

@@ -420,7 +420,7 @@ static void sight_answers_line_by_line_until_one_is_malformed(void **state) {
     static const char *const wrong[] = {"1 2 3 4 5", "1 2 3 4 5 6 7", "0 0 0 0 0 nan", "", "0 0 0 1 1 a"};
     write_text("box.obj", BOX);
     expect_success("compile box.obj -o box.enf");
-    process ran = run_enfilade(" 0.5\t0.5 0.5  0.1 0.2 .9\r\n9 9 9 .5 .5 .5\n.5 .5 .5 .5 .5 2\n0 0 0 1 1 1",
+    process ran = run_enfilade(" 0.5\t0.5 0.5  0.1 0.2 .9\r\n9 9 9 .5 .5 .5\n.5 .5 .5 .5 .5 9\n0 0 0 1 1 1",
                                "sight box.enf");
     assert_int_equal(ran.status, 0);
     assert_string_equal(ran.out, "1\n0\n0\n1\n");

@@ -559,8 +559,8 @@ static void query_everything(opened *o, uint64_t *seed) {
 
 static void nonsense_ends(void **state) {
     (void)state;
-    static const char *const tags[] = {"SIGHT",    "BARRIER", "BARRVERT", "WALLTREE",
-                                       "PORTTREE", "RPOINT",  "PORTAL"};
+    static const char *const tags[] = {"SIGHT",  "BARRIER", "BARRVERT", "WALLTREE", "PORTTREE",
+                                       "RPOINT", "PORTAL",  "BRICKS",   "BRICKTET"};
     uint64_t seed = 16;
     int opened_count = 0;
     print_message("seed %llu\n", (unsigned long long)seed);
@@ -572,7 +572,7 @@ static void nonsense_ends(void **state) {
     for (int n = 0; n < 3000; n++) {
         enf_world_close(o.world);
         memcpy(o.bytes, good, o.size);
-        const enf_file_section *section = find_section(o.bytes, tags[n % 7]);
+        const enf_file_section *section = find_section(o.bytes, tags[n % 9]);
         int changes = 1 + (int)(next_random(&seed) % 8);
         for (int k = 0; k < changes && section->size; k++) {
             unsigned char *word = o.bytes + section->offset + next_random(&seed) % (section->size / 4) * 4;
