@@ -43,12 +43,6 @@ static void load_relative(const query *query, int32_t point, double out[3]) {
     for (int a = 0; a < 3; a++) out[a] = from[a] * scale - query->at[a];
 }
 
-/// The determinant of three rows.
-static double volume_of(const double p[3], const double q[3], const double r[3]) {
-    return p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) +
-           p[2] * (q[0] * r[1] - q[1] * r[0]);
-}
-
 /// How the point lies to the plane through three others, by the volume that they span as seen from it if that
 /// leaves no doubt.
 static int side_of(const query *query, const int32_t through[3], double volume) {
@@ -60,19 +54,31 @@ static int side_of(const query *query, const int32_t through[3], double volume) 
     return enf_points_orient(a, b, c, query->at);
 }
 
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 /// +1 strictly inside the tetrahedron, 0 on its boundary, -1 outside. *away: a face that has the point
 /// outside. `behind`: a face that is known to have it inside; -1: none.
 static int tetrahedron_side(const query *query, int32_t tetrahedron, int behind, int *away) {
     const int32_t *corners = query->view->tetrahedra[tetrahedron];
-    double at[4][3];
+    double at[4][3], one[3], other[3];
     int least = 1;
     for (int k = 0; k < 4; k++) load_relative(query, corners[k], at[k]);
+    cross(at[2], at[3], one);
+    cross(at[0], at[1], other);
+    const double volume[4] = {-dot(at[1], one), dot(at[0], one), -dot(at[3], other), dot(at[2], other)};
     for (int face = 0; face < 4; face++) {
         const int *pick = face_corner[face];
         if (face == behind) continue;
-        double volume = volume_of(at[pick[0]], at[pick[1]], at[pick[2]]);
-        int side =
-            side_of(query, (const int32_t[3]){corners[pick[0]], corners[pick[1]], corners[pick[2]]}, volume);
+        const int32_t through[3] = {corners[pick[0]], corners[pick[1]], corners[pick[2]]};
+        int side = side_of(query, through, volume[face]);
         if (side < 0) {
             *away = face;
             return -1;
@@ -84,12 +90,13 @@ static int tetrahedron_side(const query *query, int32_t tetrahedron, int behind,
 
 static int plane_side(const query *query, int32_t plane) {
     const int32_t *through = query->view->planes[plane];
-    double a[3], b[3], c[3];
+    double a[3], b[3], c[3], across[3];
     if (through[2] >= 0) {
         load_relative(query, through[0], a);
         load_relative(query, through[1], b);
         load_relative(query, through[2], c);
-        return side_of(query, through, volume_of(a, b, c));
+        cross(b, c, across);
+        return side_of(query, through, dot(a, across));
     }
     // One step of the finer grid along the axis, or against it at the very edge of the range.
     int axis = -1 - through[2];

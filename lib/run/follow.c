@@ -31,36 +31,37 @@ static enf_place place_before(const enf_world *world, const double point[3], int
     return (enf_place){cell, -1, region, hint, (enf_world_kind)view->regions[region].kind};
 }
 
-/// One straight part. True if the point is led elsewhere.
+/// One straight part. True if the point is led elsewhere: from and to are the next part.
 static bool follow_leg(const enf_world *world, enf_way *way, const enf_step *step, enf_stepped *stepped,
-                       enf_passed *passed) {
-    enf_place place = enf_world_locate(world, way->to, stepped->place.tetrahedron);
+                       enf_passed *passed, double from[3], double to[3]) {
+    enf_place place = enf_world_locate(world, to, stepped->place.tetrahedron);
     bool near = place.fine_cell >= 0 && place.fine_cell == stepped->place.fine_cell;
     bool wanted = passed->portals && passed->capacity > 0;
     int32_t cell = stepped->place.cell, hint = place.tetrahedron;
-    memcpy(stepped->point, way->to, sizeof stepped->point);
+    memcpy(stepped->point, to, sizeof stepped->point);
     stepped->place = place;
-    if (near || cell < 0 || (!wanted && !enf_way_meets_change(way))) return false;
+    if (near || cell < 0 || !enf_way_set(way, from, to)) return false;
+    if (!wanted && !enf_way_meets_change(way)) return false;
 
     enf_way_end end = enf_way_pass(way, ENF_WAY_WHOLE, &cell, place.cell, passed);
     if (end.outcome == ENF_WAY_FREE) return false;
     int32_t most = step->depth_max > 0 ? step->depth_max : DEPTH_DEFAULT;
-    double at[3];
-    enf_way_point(way, end.share, at);
+    enf_way_point(way, end.share, from);
     if (end.outcome == ENF_WAY_SHUT || stepped->depth >= most) {
-        memcpy(stepped->point, at, sizeof at);
-        stepped->place = place_before(world, at, cell, hint);
+        memcpy(stepped->point, from, sizeof stepped->point);
+        stepped->place = place_before(world, from, cell, hint);
         stepped->portal = end.portal;
         return false;
     }
     stepped->depth++;
     take_matrix(stepped->matrix, end.passage.matrix);
-    enf_transform_point(end.passage.matrix, at, at);
-    enf_transform_point(end.passage.matrix, way->to, stepped->point);
+    enf_transform_point(end.passage.matrix, from, from);
+    enf_transform_point(end.passage.matrix, to, to);
+    memcpy(stepped->point, to, sizeof stepped->point);
     int32_t region = way->view->cells[end.passage.to].region;
     stepped->place =
         (enf_place){end.passage.to, -1, region, hint, (enf_world_kind)way->view->regions[region].kind};
-    return enf_way_set(way, at, stepped->point);
+    return true;
 }
 
 enf_status enf_world_follow(const enf_world *world, const enf_instance *instance, const enf_step *step,
@@ -72,12 +73,10 @@ enf_status enf_world_follow(const enf_world *world, const enf_instance *instance
     if (stepped->place.cell >= view->cell_count) stepped->place.cell = -1;
     enf_way way = {.view = view, .instance = instance};
     enf_passed passed = {step->portals, step->portal_capacity, 0};
-    if (enf_way_set(&way, step->from, step->to)) {
-        while (follow_leg(world, &way, step, stepped, &passed)) continue;
-    } else {
-        memcpy(stepped->point, step->to, sizeof stepped->point);
-        stepped->place = enf_world_locate(world, step->to, step->place.tetrahedron);
-    }
+    double from[3], to[3];
+    memcpy(from, step->from, sizeof from);
+    memcpy(to, step->to, sizeof to);
+    while (follow_leg(world, &way, step, stepped, &passed, from, to)) continue;
     stepped->portal_count = passed.count;
     return ENF_OK;
 }
