@@ -16,6 +16,7 @@
 #include <math.h>
 
 #define WALK_STEPS_MAX 24
+#define HINT_STEPS_MAX 8 // where bricks have another start
 #define BRANCHES_MAX \
     64 // cut planes of one tetrahedron that go through the point; more are not followed twice
 
@@ -149,24 +150,26 @@ static int face_to(const enf_file_view *view, int32_t tetrahedron, int32_t other
     return -1;
 }
 
-/// The walk from a hint. True if it ended strictly inside a fine cell; otherwise nothing has been found.
-static bool walk(query *query, int32_t hint) {
+typedef enum outcome { FOUND, ON_BORDER, LOST } outcome;
+
+/// The walk from a hint. FOUND if it ended strictly inside a fine cell; otherwise nothing has been found.
+static outcome walk(query *query, int32_t hint, int steps) {
     const enf_file_view *view = query->view;
     int32_t tetrahedron = hint;
     int behind = -1;
-    for (int step = 0; step < WALK_STEPS_MAX && tetrahedron >= 0; step++) {
+    for (int step = 0; step < steps && tetrahedron >= 0; step++) {
         int away = 0, side = tetrahedron_side(query, tetrahedron, behind, &away);
         if (side > 0) {
-            if (descend(query, tetrahedron)) return true;
+            if (descend(query, tetrahedron)) return FOUND;
             query->best = -1;
-            return false;
+            return ON_BORDER;
         }
-        if (side == 0) return false;
+        if (side == 0) return ON_BORDER;
         int32_t next = view->tetrahedron_next[tetrahedron][away];
         behind = next >= 0 ? face_to(view, next, tetrahedron) : -1;
         tetrahedron = next;
     }
-    return false;
+    return LOST;
 }
 
 /// A tetrahedron not far from the point; -1: unknown.
@@ -290,9 +293,12 @@ enf_place enf_view_locate_grid(const enf_file_view *view, const double grid[3], 
         if (!(fabs(scaled) <= ENF_FILE_GRID_MAX)) return nowhere;
         query.at[a] = enf_round(scaled);
     }
-    if (hint < 0 || hint >= view->tetrahedron_count) hint = find_start(&query);
-    bool found = hint >= 0 && walk(&query, hint);
-    if (!found) search(&query);
+    outcome outcome = LOST;
+    if (hint >= 0 && hint < view->tetrahedron_count)
+        outcome = walk(&query, hint, view->start ? HINT_STEPS_MAX : WALK_STEPS_MAX);
+    int32_t start = outcome == LOST ? find_start(&query) : -1;
+    if (start >= 0) outcome = walk(&query, start, WALK_STEPS_MAX);
+    if (outcome != FOUND) search(&query);
     if (query.best < 0) search_nearest(&query);
     if (query.best < 0) return nowhere;
     int32_t region = view->fine_region[query.best];

@@ -43,7 +43,7 @@ static bool find_ends(const enf_world *world, const enf_sight_query *query, enf_
     if (query->to_place)
         sight->to = *query->to_place;
     else
-        sight->to = enf_world_locate(world, query->to, sight->from.tetrahedron);
+        sight->to = enf_world_locate(world, query->to, -1);
     const enf_file_view *view = enf_world_file(world);
     return sight->from.cell >= 0 && sight->to.cell >= 0 && sight->from.cell < view->cell_count &&
            sight->to.cell < view->cell_count && is_finite(query->from) && is_finite(query->to);
