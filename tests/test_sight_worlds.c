@@ -101,7 +101,8 @@ static int32_t find_stop(const opened *o, const double from[3], const double to[
     return -1;
 }
 
-/// A quarter of the pairs are near each other; half have a corner of a triangle, or a point of an edge, exactly between them.
+/// A quarter of the pairs are near each other; half have a corner of a triangle, or a point of an edge,
+/// exactly between them.
 static void choose_pair(const opened *o, uint64_t *seed, int n, double from[3], double to[3]) {
     double low[3], high[3];
     to_fine(o->view, o->view->frame->box_min, low);

@@ -55,7 +55,8 @@ typedef struct enf_sight {
 /// file has no sight part. A point that is in no cell, or not finite, sees nothing.
 ///
 /// The portals passed are those of a chain of cells from the one point to the other. Where the segment passes
-/// an edge at which several portals meet, it is one of the possible chains.
+/// an edge at which several portals meet, it is one of the possible chains. One that runs within the plane of
+/// a portal does not pass that portal, and its chain may end before its last cell.
 ENF_API enf_status enf_sight_between(const enf_world *world, const enf_instance *instance,
                                      const enf_sight_query *query, enf_sight *sight, enf_error *error);
 
@@ -84,12 +85,12 @@ typedef struct enf_ray_hit {
     enf_ray_end end;
     double point[3];     ///< where it ended, world
     double direction[3]; ///< the way it went in the end, turned and scaled by transforms; 1 long at first
-    double distance; ///< from the origin along the ray; what lies behind a transform that scales is measured
-                     ///< as before it
-    int32_t triangle;     ///< -1: none
-    int32_t portal;       ///< the closed one, or the one that is one too many; -1: none
-    int32_t cell;         ///< where it ended
-    int32_t depth;        ///< portals that transform, passed
+    double distance;  ///< from the origin along the ray; what lies behind a transform that scales is measured
+                      ///< as before it
+    int32_t triangle; ///< -1: none
+    int32_t portal;   ///< the closed one, or the one that is one too many; -1: none
+    int32_t cell;     ///< where it ended
+    int32_t depth;    ///< portals that transform, passed
     int32_t portal_count; ///< portals passed, in order; may be more than the capacity
 } enf_ray_hit;
 
