@@ -5,6 +5,8 @@
 #include "base/hash.h"
 #include "enfilade/objects.h"
 #include "enfilade/prefetch.h"
+#include "enfilade/run.h"
+#include "enfilade/sight.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -74,6 +76,40 @@ static void use_sides(const enf_file_view *file) {
         for (int32_t p = file->facet_piece[f]; p < file->facet_piece[f + 1]; p++)
             sink += file->facet_plane[file->piece_facet[p]];
     }
+}
+
+/// From one end of each cell's box to the other, with doors, one of them closed, and a portal that leads
+/// round.
+static void use_sight(const enf_world *world, const enf_file_view *file) {
+    enf_instance *instance = NULL;
+    const enf_door closed = {.state = ENF_DOOR_CLOSED};
+    const double round[12] = {1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1, 0};
+    if (enf_instance_create(&instance, world, NULL, NULL)) return;
+    enf_instance_set_door(instance, 2, &closed, NULL);
+    enf_instance_set_transform(instance, 0, 0, round, NULL);
+    for (int32_t i = 0; i < file->cell_count && i < 16; i++) {
+        const enf_place place = {.cell = i, .fine_cell = -1, .region = 0, .tetrahedron = -1};
+        int32_t portals[4];
+        enf_sight_query query = {sizeof query, {0}, {0}, &place, &place, portals, i % 5, i % 2};
+        enf_ray ray = {sizeof ray, {0}, {0}, 0, &place, 0, portals, i % 5, i % 2};
+        enf_step step = {sizeof step, place, {0}, {0}, 0, portals, i % 5};
+        enf_sight sight;
+        enf_ray_hit hit;
+        enf_stepped stepped;
+        for (int a = 0; a < 3; a++) {
+            query.from[a] = step.from[a] = ray.origin[a] = file->cells[i].box_min[a];
+            query.to[a] = step.to[a] = file->cells[i].box_max[a];
+            ray.direction[a] = query.to[a] - query.from[a];
+        }
+        for (int k = 0; k < 2; k++) {
+            if (!enf_sight_between(world, k ? instance : NULL, &query, &sight, NULL))
+                sink += sight.portal_count;
+            if (!enf_ray_cast(world, k ? instance : NULL, &ray, &hit, NULL)) sink += hit.distance;
+            if (!enf_world_follow(world, k ? instance : NULL, &step, &stepped, NULL))
+                sink += stepped.point[0];
+        }
+    }
+    enf_instance_free(instance);
 }
 
 static void use_locate(const enf_world *world, const enf_file_view *file) {
@@ -147,6 +183,7 @@ static void use(const enf_world *world) {
     }
     use_exact(file);
     use_sides(file);
+    use_sight(world, file);
     use_locate(world, file);
     use_shapes(world, file);
     use_prefetch(world, file);

@@ -26,6 +26,7 @@ struct enf_instance {
     const enf_file_view *view;
     door *doors;            ///< per pair of portals
     transform **transforms; ///< per portal; null: never had one. Null if none ever had
+    _Atomic bool touched;   ///< some door was set
 };
 
 enf_status enf_instance_create(enf_instance **out, const enf_world *world,
@@ -40,7 +41,8 @@ enf_status enf_instance_create(enf_instance **out, const enf_world *world,
         free(doors);
         return enf_fail_memory(error, "an instance");
     }
-    *instance = (enf_instance){.view = view, .doors = doors};
+    instance->view = view;
+    instance->doors = doors;
     *out = instance;
     return ENF_OK;
 }
@@ -77,6 +79,7 @@ enf_status enf_instance_set_door(enf_instance *instance, int32_t portal, const e
     if (partly && (!is_finite(plane, 4) || (plane[0] == 0 && plane[1] == 0 && plane[2] == 0)))
         return enf_fail(error, ENF_BAD_USAGE, "a door that is partly open needs a plane with a direction");
     door *door = &instance->doors[portal / 2];
+    atomic_store_explicit(&instance->touched, true, memory_order_release);
     uint32_t version = atomic_load_explicit(&door->version, memory_order_relaxed);
     atomic_store_explicit(&door->version, version + 1, memory_order_relaxed);
     atomic_store_explicit(&door->state, (uint32_t)set->state, memory_order_release);
@@ -133,6 +136,21 @@ enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, in
     (*place)->used = true;
     memcpy((*place)->matrix, matrix, sizeof(*place)->matrix);
     return ENF_OK;
+}
+
+bool enf_instance_is_changed(const enf_instance *instance) {
+    return instance &&
+           (instance->transforms || atomic_load_explicit(&instance->touched, memory_order_acquire));
+}
+
+bool enf_instance_pair_is_changed(const enf_instance *instance, int32_t portal) {
+    int32_t pair = portal / 2;
+    if (atomic_load_explicit(&instance->doors[pair].version, memory_order_relaxed) != 0 &&
+        read_door(&instance->doors[pair]).state != ENF_DOOR_OPEN)
+        return true;
+    for (int32_t i = 2 * pair; instance->transforms && i < 2 * pair + 2; i++)
+        if (instance->transforms[i] && instance->transforms[i]->used) return true;
+    return false;
 }
 
 enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal) {
