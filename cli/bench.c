@@ -20,6 +20,7 @@ static const cli_command benches[] = {
     {"visibility", "DIR: the rungs of visibility on portal files: run time against error",
      cli_bench_visibility},
     {"worlds", "[DIR]: the visible sets of compiled worlds: time and excess", cli_bench_worlds},
+    {"run", "NAME ...: what the runtime takes per question", cli_bench_run},
 };
 
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "run/view_region.h"
+
+#include <math.h>
+#include <string.h>
+
+/// Corners nearer than this are one: it is well within the slack, and well above the rounding.
+static const double same_corner = ENF_VIEW_SLACK * 1e-2;
+/// Of longer edges the direction is right enough: rounding moves the far end of the line, a screen away, by
+/// less than the slack.
+static const double short_edge = 1e-3;
+/// Polygons thinner than this have edges whose ends may have changed sides.
+static const double thin_area = 1e-5;
+
+double enf_polygon_area(const double (*corners)[2], int32_t count) {
+    double sum = 0;
+    for (int32_t i = 2; i < count; i++) {
+        double u[2] = {corners[i - 1][0] - corners[0][0], corners[i - 1][1] - corners[0][1]};
+        double v[2] = {corners[i][0] - corners[0][0], corners[i][1] - corners[0][1]};
+        sum += u[0] * v[1] - u[1] * v[0];
+    }
+    return 0.5 * sum;
+}
+
+static void bound(const double (*corners)[2], int32_t count, double rectangle[4]) {
+    rectangle[0] = rectangle[2] = corners[0][0];
+    rectangle[1] = rectangle[3] = corners[0][1];
+    for (int32_t i = 1; i < count; i++) {
+        double x = corners[i][0], y = corners[i][1];
+        rectangle[0] = x < rectangle[0] ? x : rectangle[0];
+        rectangle[1] = y < rectangle[1] ? y : rectangle[1];
+        rectangle[2] = x > rectangle[2] ? x : rectangle[2];
+        rectangle[3] = y > rectangle[3] ? y : rectangle[3];
+    }
+}
+
+static int32_t unite_same(double (*corners)[2], int32_t count) {
+    int32_t kept = 0;
+    for (int32_t i = 0; i < count; i++) {
+        const double *last = corners[kept ? kept - 1 : count - 1];
+        bool same =
+            fabs(corners[i][0] - last[0]) < same_corner && fabs(corners[i][1] - last[1]) < same_corner;
+        if (same && (kept || i + 1 < count)) continue;
+        memmove(corners[kept++], corners[i], sizeof *corners);
+    }
+    return kept;
+}
+
+/// As far out as it takes to have all corners within.
+static double support(const double (*corners)[2], int32_t count, double a, double b) {
+    double least = INFINITY;
+    for (int32_t i = 0; i < count; i++) least = fmin(least, a * corners[i][0] + b * corners[i][1]);
+    return -least;
+}
+
+static void draw_lines(enf_view_region *region) {
+    const double(*corners)[2] = (const double(*)[2])region->corners;
+    int32_t count = region->count;
+    bool thin = !(region->area > thin_area);
+    for (int32_t i = 0; i < count; i++) {
+        const double *from = corners[i], *to = corners[i + 1 < count ? i + 1 : 0];
+        double u[2] = {to[0] - from[0], to[1] - from[1]};
+        double length = sqrt(u[0] * u[0] + u[1] * u[1]);
+        enf_view_line *line = &region->lines[i];
+        line->a = length > 0 ? -u[1] / length : 1;
+        line->b = length > 0 ? u[0] / length : 0;
+        line->c = -(line->a * from[0] + line->b * from[1]);
+        if (thin || length < short_edge) line->c = fmax(line->c, support(corners, count, line->a, line->b));
+        line->c += ENF_VIEW_SLACK;
+    }
+}
+
+void enf_region_make_rectangle(enf_view_region *region, const double r[4]) {
+    const double corners[4][2] = {{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}};
+    const enf_view_line lines[4] = {
+        {1, 0, ENF_VIEW_SLACK - r[0], 0},
+        {-1, 0, ENF_VIEW_SLACK + r[2], 0},
+        {0, 1, ENF_VIEW_SLACK - r[1], 0},
+        {0, -1, ENF_VIEW_SLACK + r[3], 0},
+    };
+    memmove(region->rectangle, r, sizeof region->rectangle);
+    region->area = (r[2] - r[0]) * (r[3] - r[1]);
+    region->count = 4;
+    memcpy(region->corners, corners, sizeof corners);
+    memcpy(region->lines, lines, sizeof lines);
+}
+
+/// A polygon seen from its edge is a line on the screen, or a point: a thin box around it.
+static void make_thin(enf_view_region *region, const double (*corners)[2], int32_t count) {
+    const double *from = corners[0], *to = corners[count - 1];
+    double u[2] = {to[0] - from[0], to[1] - from[1]}, h = 0.5 * ENF_VIEW_SLACK;
+    double length = sqrt(u[0] * u[0] + u[1] * u[1]);
+    u[0] = length > 0 ? u[0] / length * h : h;
+    u[1] = length > 0 ? u[1] / length * h : 0;
+    const double box[4][2] = {{from[0] - u[0] + u[1], from[1] - u[1] - u[0]},
+                              {to[0] + u[0] + u[1], to[1] + u[1] - u[0]},
+                              {to[0] + u[0] - u[1], to[1] + u[1] + u[0]},
+                              {from[0] - u[0] - u[1], from[1] - u[1] + u[0]}};
+    memcpy(region->corners, box, sizeof box);
+    region->count = 4;
+    bound(box, 4, region->rectangle);
+    region->area = fabs(enf_polygon_area(box, 4));
+    draw_lines(region);
+}
+
+int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max) {
+    count = unite_same(corners, count);
+    if (count < 3) {
+        make_thin(region, (const double(*)[2])corners, count);
+        return 0;
+    }
+    bound((const double(*)[2])corners, count, region->rectangle);
+    region->count = count > edges_max ? enf_polygon_simplify(corners, count, edges_max) : count;
+    if (region->count > edges_max) { // not convex
+        enf_region_make_rectangle(region, region->rectangle);
+        return count - 4;
+    }
+    memcpy(region->corners, corners, (size_t)region->count * sizeof *corners);
+    region->area = enf_polygon_area((const double(*)[2])corners, region->count);
+    draw_lines(region);
+    return count - region->count;
+}
+
+void enf_region_copy(enf_view_region *to, const enf_view_region *from) {
+    memcpy(to->rectangle, from->rectangle, sizeof to->rectangle);
+    to->area = from->area;
+    to->count = from->count;
+    memcpy(to->corners, from->corners, (size_t)from->count * sizeof *from->corners);
+    memcpy(to->lines, from->lines, (size_t)from->count * sizeof *from->lines);
+}
+
+bool enf_region_contains(const enf_view_region *outer, const enf_view_region *inner) {
+    const double *o = outer->rectangle, *i = inner->rectangle, h = 0.5 * ENF_VIEW_SLACK;
+    if (!(i[0] >= o[0] - h && i[1] >= o[1] - h && i[2] <= o[2] + h && i[3] <= o[3] + h)) return false;
+    for (int32_t line = 0; line < outer->count; line++) {
+        const enf_view_line *l = &outer->lines[line];
+        for (int32_t k = 0; k < inner->count; k++)
+            if (!(l->a * inner->corners[k][0] + l->b * inner->corners[k][1] + l->c >= h)) return false;
+    }
+    return true;
+}
+
+/// Left of from to, or on it?
+static bool turns_right(const double from[2], const double to[2], const double point[2]) {
+    return (to[0] - from[0]) * (point[1] - from[1]) - (to[1] - from[1]) * (point[0] - from[0]) <= 0;
+}
+
+/// A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979.
+int32_t enf_hull(double (*points)[2], int32_t count) {
+    double chain[2 * ENF_VIEW_CORNERS + 2][2];
+    if (count > ENF_VIEW_CORNERS) count = ENF_VIEW_CORNERS;
+    for (int32_t i = 1; i < count; i++) { // few, and often sorted
+        double x = points[i][0], y = points[i][1];
+        int32_t j = i;
+        for (; j > 0 && (points[j - 1][0] > x || (points[j - 1][0] == x && points[j - 1][1] > y)); j--)
+            memcpy(points[j], points[j - 1], sizeof *points);
+        points[j][0] = x;
+        points[j][1] = y;
+    }
+    int32_t made = 0;
+    for (int32_t i = 0; i < count; i++) {
+        while (made >= 2 && turns_right(chain[made - 2], chain[made - 1], points[i])) made--;
+        memcpy(chain[made++], points[i], sizeof *points);
+    }
+    int32_t low = made + 1;
+    for (int32_t i = count - 2; i >= 0; i--) {
+        while (made >= low && turns_right(chain[made - 2], chain[made - 1], points[i])) made--;
+        memcpy(chain[made++], points[i], sizeof *points);
+    }
+    if (made > 1) made--; // the first again
+    if (made > count) made = count;
+    memcpy(points, chain, (size_t)made * sizeof *points);
+    return made;
+}
