@@ -104,7 +104,7 @@ static void unite_regions(enf_view *view, const enf_view_place *place, enf_view_
         for (int k = 0; k < 4; k++)
             rectangle[k] = k < 2 ? fmin(first->region.rectangle[k], visit->region.rectangle[k])
                                  : fmax(first->region.rectangle[k], visit->region.rectangle[k]);
-        enf_region_make(&first->region, corners, count, view->queue.edges_max);
+        enf_region_make(&first->region, corners, count, view->queue.edges_max, NULL);
         memcpy(first->region.rectangle, rectangle, sizeof rectangle);
     }
 }

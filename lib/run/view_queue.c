@@ -160,7 +160,7 @@ static bool join(enf_view_queue *q, int32_t number, const enf_view_arrival *arri
     double sum = visit->region.area + arrival->region->area;
     if (count > 2 && enf_polygon_area((const double(*)[2])corners, count) > sum * (1 + join_waste))
         return false;
-    visible->stats.edges_removed += enf_region_make(&visit->region, corners, count, q->edges_max);
+    visible->stats.edges_removed += enf_region_make(&visit->region, corners, count, q->edges_max, NULL);
     wait(q, number, arrival->nearest);
     visible->stats.joined++;
     return true;
@@ -175,9 +175,10 @@ static void grow(enf_view_queue *q, enf_view_place *place, const enf_view_arriva
     if (visit->waiting < 0) place->growths++;
     if (place->growths > GROWTHS_MAX) {
         enf_region_make_rectangle(&visit->region, screen);
+        place->is_whole = true;
     } else {
         int32_t count = enf_view_hull(&visit->region, arrival->region, corners);
-        visible->stats.edges_removed += enf_region_make(&visit->region, corners, count, q->edges_max);
+        visible->stats.edges_removed += enf_region_make(&visit->region, corners, count, q->edges_max, NULL);
     }
     wait(q, place->first, arrival->nearest);
     visible->stats.grown++;
@@ -189,7 +190,7 @@ bool enf_queue_add(enf_view_queue *q, const enf_view_arrival *arrival, enf_visib
     if (!place) return false;
     visible->stats.passed++;
     for (int32_t i = place->first; i >= 0; i = q->visits[i].next) {
-        if (!enf_region_contains(&q->visits[i].region, arrival->region)) continue;
+        if (!place->is_whole && !enf_region_contains(&q->visits[i].region, arrival->region)) continue;
         visible->stats.contained++;
         if (q->visits[i].waiting >= 0) wait(q, i, arrival->nearest);
         return true;

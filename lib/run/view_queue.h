@@ -29,6 +29,7 @@ typedef struct enf_view_place {
     int32_t first; ///< visit
     int32_t visit_count, growths;
     int32_t entry; ///< -1: not looked at yet
+    bool is_whole; ///< the first visit has the whole screen
 } enf_view_place;
 
 typedef struct enf_view_slot {

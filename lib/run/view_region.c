@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+/// Of what lies on a line, after a division.
+static const double on_line = ENF_VIEW_SLACK * 1e-4;
 /// Corners nearer than this are one: it is well within the slack, and well above the rounding.
 static const double same_corner = ENF_VIEW_SLACK * 1e-2;
 /// Of longer edges the direction is right enough: rounding moves the far end of the line, a screen away, by
@@ -53,7 +55,19 @@ static double support(const double (*corners)[2], int32_t count, double a, doubl
     return -least;
 }
 
-static void draw_lines(enf_view_region *region) {
+/// The line of the outer region on which an edge lies, so that it need not move outwards again; or null.
+static const enf_view_line *find_line(const enf_view_region *outer, const double from[2],
+                                      const double to[2]) {
+    for (int32_t i = 0; outer && i < outer->count; i++) {
+        const enf_view_line *l = &outer->lines[i];
+        if (fabs(l->a * from[0] + l->b * from[1] + l->c) <= on_line &&
+            fabs(l->a * to[0] + l->b * to[1] + l->c) <= on_line)
+            return l;
+    }
+    return NULL;
+}
+
+static void draw_lines(enf_view_region *region, const enf_view_region *outer) {
     const double(*corners)[2] = (const double(*)[2])region->corners;
     int32_t count = region->count;
     bool thin = !(region->area > thin_area);
@@ -62,6 +76,11 @@ static void draw_lines(enf_view_region *region) {
         double u[2] = {to[0] - from[0], to[1] - from[1]};
         double length = sqrt(u[0] * u[0] + u[1] * u[1]);
         enf_view_line *line = &region->lines[i];
+        const enf_view_line *known = find_line(outer, from, to);
+        if (known) {
+            *line = *known;
+            continue;
+        }
         line->a = length > 0 ? -u[1] / length : 1;
         line->b = length > 0 ? u[0] / length : 0;
         line->c = -(line->a * from[0] + line->b * from[1]);
@@ -100,10 +119,11 @@ static void make_thin(enf_view_region *region, const double (*corners)[2], int32
     region->count = 4;
     bound(box, 4, region->rectangle);
     region->area = fabs(enf_polygon_area(box, 4));
-    draw_lines(region);
+    draw_lines(region, NULL);
 }
 
-int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max) {
+int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max,
+                        const enf_view_region *outer) {
     count = unite_same(corners, count);
     if (count < 3) {
         make_thin(region, (const double(*)[2])corners, count);
@@ -117,7 +137,7 @@ int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t c
     }
     memcpy(region->corners, corners, (size_t)region->count * sizeof *corners);
     region->area = enf_polygon_area((const double(*)[2])corners, region->count);
-    draw_lines(region);
+    draw_lines(region, outer);
     return count - region->count;
 }
 
@@ -130,12 +150,12 @@ void enf_region_copy(enf_view_region *to, const enf_view_region *from) {
 }
 
 bool enf_region_contains(const enf_view_region *outer, const enf_view_region *inner) {
-    const double *o = outer->rectangle, *i = inner->rectangle, h = 0.5 * ENF_VIEW_SLACK;
+    const double *o = outer->rectangle, *i = inner->rectangle, h = ENF_VIEW_SLACK;
     if (!(i[0] >= o[0] - h && i[1] >= o[1] - h && i[2] <= o[2] + h && i[3] <= o[3] + h)) return false;
     for (int32_t line = 0; line < outer->count; line++) {
         const enf_view_line *l = &outer->lines[line];
         for (int32_t k = 0; k < inner->count; k++)
-            if (!(l->a * inner->corners[k][0] + l->b * inner->corners[k][1] + l->c >= h)) return false;
+            if (!(l->a * inner->corners[k][0] + l->b * inner->corners[k][1] + l->c >= -on_line)) return false;
     }
     return true;
 }

@@ -31,15 +31,18 @@ typedef struct enf_view_region {
 } enf_view_region;
 
 /// Counter-clockwise corners become a region. Corners that are the same up to rounding are one. Changes the
-/// corners given: more than `edges_max` lose edges. Returns the number of edges removed.
-int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max);
+/// corners given: more than `edges_max` lose edges. Edges that lie on lines of `outer` (which clipped the
+/// corners; or null) keep those lines: the slack does not add up from portal to portal. Returns the number of
+/// edges removed.
+int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max,
+                        const enf_view_region *outer);
 
 /// The region of a rectangle.
 void enf_region_make_rectangle(enf_view_region *region, const double rectangle[4]);
 
 void enf_region_copy(enf_view_region *to, const enf_view_region *from);
 
-/// Is every corner of `inner` within the lines of `outer`, by half the slack?
+/// Is every corner of `inner` within the lines of `outer`?
 bool enf_region_contains(const enf_view_region *outer, const enf_view_region *inner);
 
 /// The convex hull of points, counter-clockwise, in place. Returns the number of corners.

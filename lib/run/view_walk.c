@@ -50,7 +50,7 @@ static uint64_t find_facing(const enf_view *view, const enf_file_portal *portal,
 static void make_region(enf_view *view, double (*corners)[2], int32_t count, const look *look) {
     if (view->options.rectangles) {
         const double *outer = look->clipping.region->rectangle;
-        enf_region_make(&view->region, corners, count, ENF_VIEW_EDGES_MAX);
+        enf_region_make(&view->region, corners, count, ENF_VIEW_EDGES_MAX, NULL);
         double r[4];
         for (int i = 0; i < 4; i++) // the slack that lines have may have led beyond
             r[i] =
@@ -59,7 +59,7 @@ static void make_region(enf_view *view, double (*corners)[2], int32_t count, con
         return;
     }
     view->visible.stats.edges_removed +=
-        enf_region_make(&view->region, corners, count, view->options.edges_max);
+        enf_region_make(&view->region, corners, count, view->options.edges_max, look->clipping.region);
 }
 
 /// A region passes. False: no room.
