@@ -52,7 +52,7 @@ enf_status enf_view_create(enf_view **out, const enf_world *world, const enf_vie
         const enf_view_options *o = &view->options;
         int32_t cells = view->file->cell_count;
         view->entry_capacity = cells > o->visit_capacity ? cells : o->visit_capacity;
-        bool fits = enf_queue_create(&view->queue, o->visit_capacity, o->edges_max, o->regions_max);
+        bool fits = enf_queue_create(&view->queue, o);
         fits = enf_seen_create(&view->seen, view->file) && fits;
         view->entries = calloc((size_t)view->entry_capacity + 1, sizeof *view->entries);
         view->order = calloc((size_t)view->entry_capacity + 1, sizeof *view->order);
@@ -104,7 +104,7 @@ static void unite_regions(enf_view *view, const enf_view_place *place, enf_view_
         for (int k = 0; k < 4; k++)
             rectangle[k] = k < 2 ? fmin(first->region.rectangle[k], visit->region.rectangle[k])
                                  : fmax(first->region.rectangle[k], visit->region.rectangle[k]);
-        enf_region_make(&first->region, corners, count, view->queue.edges_max, NULL);
+        enf_region_make(&first->region, corners, count, view->queue.edges_max, NULL, NULL);
         memcpy(first->region.rectangle, rectangle, sizeof rectangle);
     }
 }

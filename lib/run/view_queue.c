@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "run/view_queue.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /// Two regions become one if the hull is larger than both together by at most this share.
-static const double join_waste = 0.125;
+static const double join_waste = 1;
 
 enum { GROWTHS_MAX = 3 };
 
-bool enf_queue_create(enf_view_queue *q, int32_t capacity, int32_t edges_max, int32_t regions_max) {
-    size_t n = (size_t)capacity, slots = 16;
+bool enf_queue_create(enf_view_queue *q, const enf_view_options *options) {
+    int32_t edges_max = options->edges_max;
+    size_t n = (size_t)options->visit_capacity, slots = 16;
     while (slots < 2 * n) slots *= 2;
-    *q = (enf_view_queue){.capacity = capacity, .edges_max = edges_max, .regions_max = regions_max};
+    *q = (enf_view_queue){.capacity = options->visit_capacity,
+                          .edges_max = edges_max,
+                          .regions_max = options->regions_max,
+                          .rectangles = options->rectangles};
     if (n > SIZE_MAX / 2 / ((size_t)edges_max * sizeof *q->lines)) return false;
     q->slot_mask = (uint32_t)(slots - 1);
     q->visits = malloc(n * sizeof *q->visits);
@@ -122,13 +127,26 @@ static enf_view_place *find_place(enf_view_queue *q, int32_t cell, int32_t space
     }
 }
 
-static void add_visit(enf_view_queue *q, enf_view_place *place, const enf_view_arrival *arrival) {
+/// Keeps a region, with fewer edges if it has too many.
+static void store(const enf_view_queue *q, enf_view_region *region, const enf_view_region *from,
+                  enf_view_stats *stats) {
+    if (from->count <= q->edges_max) {
+        enf_region_copy(region, from);
+        return;
+    }
+    double corners[ENF_VIEW_EDGES_MAX][2];
+    memcpy(corners, from->corners, (size_t)from->count * sizeof *corners);
+    stats->edges_removed += enf_region_make(region, corners, from->count, q->edges_max, from, NULL);
+}
+
+static void add_visit(enf_view_queue *q, enf_view_place *place, const enf_view_arrival *arrival,
+                      enf_visible *visible) {
     int32_t number = q->visit_count++;
     size_t first = (size_t)number * (size_t)q->edges_max;
     enf_view_visit *visit = &q->visits[number];
     visit->region.corners = q->corners + first;
     visit->region.lines = q->lines + first;
-    enf_region_copy(&visit->region, arrival->region);
+    store(q, &visit->region, arrival->region, &visible->stats);
     visit->place = (int32_t)(place - q->places);
     visit->next = place->first;
     visit->parent = arrival->parent;
@@ -151,36 +169,71 @@ static bool overlap(const double a[4], const double b[4]) {
     return a[0] <= b[2] + h && b[0] <= a[2] + h && a[1] <= b[3] + h && b[1] <= a[3] + h;
 }
 
+static void unite_rectangles(const double a[4], const double b[4], double united[4]) {
+    for (int i = 0; i < 4; i++) united[i] = i < 2 ? fmin(a[i], b[i]) : fmax(a[i], b[i]);
+}
+
+/// The hull of a visit's region and another takes the visit's place if it is not much larger than both.
+static bool unite(const enf_view_queue *q, enf_view_region *region, const enf_view_region *other,
+                  enf_view_stats *stats) {
+    double most = (region->area + other->area) * (1 + join_waste), united[4];
+    if (q->rectangles) {
+        unite_rectangles(region->rectangle, other->rectangle, united);
+        if ((united[2] - united[0]) * (united[3] - united[1]) > most) return false;
+        enf_region_make_rectangle(region, united);
+        return true;
+    }
+    double corners[ENF_VIEW_CORNERS][2], hull_corners[ENF_VIEW_EDGES_MAX][2];
+    enf_view_line hull_lines[ENF_VIEW_EDGES_MAX];
+    enf_view_region hull = {.corners = hull_corners, .lines = hull_lines};
+    int32_t count = enf_view_hull(region, other, corners);
+    if (count > 2 && enf_polygon_area((const double(*)[2])corners, count) > most) return false;
+    stats->edges_removed += enf_region_make(&hull, corners, count, q->edges_max, region, other);
+    enf_region_copy(region, &hull);
+    return true;
+}
+
 /// Joins a visit that waits, if that costs little.
 static bool join(enf_view_queue *q, int32_t number, const enf_view_arrival *arrival, enf_visible *visible) {
     enf_view_visit *visit = &q->visits[number];
-    double corners[ENF_VIEW_CORNERS][2];
     if (visit->waiting < 0 || !overlap(visit->region.rectangle, arrival->region->rectangle)) return false;
-    int32_t count = enf_view_hull(&visit->region, arrival->region, corners);
-    double sum = visit->region.area + arrival->region->area;
-    if (count > 2 && enf_polygon_area((const double(*)[2])corners, count) > sum * (1 + join_waste))
-        return false;
-    visible->stats.edges_removed += enf_region_make(&visit->region, corners, count, q->edges_max, NULL);
+    if (!unite(q, &visit->region, arrival->region, &visible->stats)) return false;
     wait(q, number, arrival->nearest);
     visible->stats.joined++;
     return true;
 }
 
-/// Joins the place's last visit, whatever it costs.
+/// Where sides of the rectangle lie on lines that are there, these stay as they are.
+static void replace_by_rectangle(const enf_view_queue *q, enf_view_region *region, const double r[4],
+                                 const enf_view_region *other) {
+    if (q->rectangles) {
+        enf_region_make_rectangle(region, r);
+        return;
+    }
+    double corners[4][2] = {{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}}, kept_corners[4][2];
+    enf_view_line kept_lines[4];
+    enf_view_region kept = {.corners = kept_corners, .lines = kept_lines};
+    enf_region_make(&kept, corners, 4, q->edges_max, region, other);
+    enf_region_copy(region, &kept);
+}
+
+/// Joins a visit whatever it costs: one that waits, if there is one. Rectangles grow less often.
 static void grow(enf_view_queue *q, enf_view_place *place, const enf_view_arrival *arrival,
                  enf_visible *visible) {
     static const double screen[4] = {-1, -1, 1, 1};
-    enf_view_visit *visit = &q->visits[place->first];
-    double corners[ENF_VIEW_CORNERS][2];
-    if (visit->waiting < 0) place->growths++;
-    if (place->growths > GROWTHS_MAX) {
-        enf_region_make_rectangle(&visit->region, screen);
+    int32_t number = place->first;
+    for (int32_t i = number; i >= 0; i = q->visits[i].next)
+        if (q->visits[i].waiting >= 0) number = i;
+    enf_view_region *region = &q->visits[number].region;
+    if (q->visits[number].waiting < 0 && ++place->growths > GROWTHS_MAX) {
+        enf_region_make_rectangle(region, screen);
         place->is_whole = true;
     } else {
-        int32_t count = enf_view_hull(&visit->region, arrival->region, corners);
-        visible->stats.edges_removed += enf_region_make(&visit->region, corners, count, q->edges_max, NULL);
+        double r[4];
+        unite_rectangles(region->rectangle, arrival->region->rectangle, r);
+        replace_by_rectangle(q, region, r, arrival->region);
     }
-    wait(q, place->first, arrival->nearest);
+    wait(q, number, arrival->nearest);
     visible->stats.grown++;
     visible->flags |= ENF_VIEW_GROWN;
 }
@@ -198,7 +251,7 @@ bool enf_queue_add(enf_view_queue *q, const enf_view_arrival *arrival, enf_visib
     for (int32_t i = place->first; i >= 0; i = q->visits[i].next)
         if (join(q, i, arrival, visible)) return true;
     if (place->visit_count < q->regions_max && q->visit_count < q->capacity)
-        add_visit(q, place, arrival);
+        add_visit(q, place, arrival, visible);
     else
         grow(q, place, arrival, visible);
     return true;

@@ -40,6 +40,7 @@ typedef struct enf_view_slot {
 typedef struct enf_view_queue {
     int32_t capacity; ///< of visits, and of places
     int32_t edges_max, regions_max;
+    bool rectangles;
     int32_t visit_count, place_count, waiting_count;
     enf_view_visit *visits;
     enf_view_place *places;
@@ -58,7 +59,7 @@ typedef struct enf_view_arrival {
 } enf_view_arrival;
 
 /// False without memory; what there is must be freed all the same.
-bool enf_queue_create(enf_view_queue *queue, int32_t capacity, int32_t edges_max, int32_t regions_max);
+bool enf_queue_create(enf_view_queue *queue, const enf_view_options *options);
 void enf_queue_free(enf_view_queue *queue);
 
 /// Forgets everything, in constant time.

@@ -7,7 +7,7 @@
 /// Of what lies on a line, after a division.
 static const double on_line = ENF_VIEW_SLACK * 1e-4;
 /// Corners nearer than this are one: it is well within the slack, and well above the rounding.
-static const double same_corner = ENF_VIEW_SLACK * 1e-2;
+static const double same_corner = ENF_VIEW_SLACK * 1e-4;
 /// Of longer edges the direction is right enough: rounding moves the far end of the line, a screen away, by
 /// less than the slack.
 static const double short_edge = 1e-3;
@@ -55,19 +55,22 @@ static double support(const double (*corners)[2], int32_t count, double a, doubl
     return -least;
 }
 
-/// The line of the outer region on which an edge lies, so that it need not move outwards again; or null.
-static const enf_view_line *find_line(const enf_view_region *outer, const double from[2],
-                                      const double to[2]) {
-    for (int32_t i = 0; outer && i < outer->count; i++) {
-        const enf_view_line *l = &outer->lines[i];
+/// A line of a region on which an edge lies, so that it need not move outwards again; or null.
+static const enf_view_line *find_line(const enf_view_region *known, const enf_view_region *made,
+                                      int32_t edge) {
+    const double(*corners)[2] = (const double(*)[2])made->corners;
+    const double *from = corners[edge], *to = corners[edge + 1 < made->count ? edge + 1 : 0];
+    for (int32_t i = 0; i < known->count; i++) {
+        const enf_view_line *l = &known->lines[i];
         if (fabs(l->a * from[0] + l->b * from[1] + l->c) <= on_line &&
-            fabs(l->a * to[0] + l->b * to[1] + l->c) <= on_line)
+            fabs(l->a * to[0] + l->b * to[1] + l->c) <= on_line &&
+            support(corners, made->count, l->a, l->b) <= l->c + on_line)
             return l;
     }
     return NULL;
 }
 
-static void draw_lines(enf_view_region *region, const enf_view_region *outer) {
+static void draw_lines(enf_view_region *region, const enf_view_region *const known[2]) {
     const double(*corners)[2] = (const double(*)[2])region->corners;
     int32_t count = region->count;
     bool thin = !(region->area > thin_area);
@@ -76,9 +79,10 @@ static void draw_lines(enf_view_region *region, const enf_view_region *outer) {
         double u[2] = {to[0] - from[0], to[1] - from[1]};
         double length = sqrt(u[0] * u[0] + u[1] * u[1]);
         enf_view_line *line = &region->lines[i];
-        const enf_view_line *known = find_line(outer, from, to);
-        if (known) {
-            *line = *known;
+        const enf_view_line *same = known[0] ? find_line(known[0], region, i) : NULL;
+        if (!same && known[1]) same = find_line(known[1], region, i);
+        if (same) {
+            *line = *same;
             continue;
         }
         line->a = length > 0 ? -u[1] / length : 1;
@@ -119,11 +123,11 @@ static void make_thin(enf_view_region *region, const double (*corners)[2], int32
     region->count = 4;
     bound(box, 4, region->rectangle);
     region->area = fabs(enf_polygon_area(box, 4));
-    draw_lines(region, NULL);
+    draw_lines(region, (const enf_view_region *const[2]){NULL, NULL});
 }
 
 int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max,
-                        const enf_view_region *outer) {
+                        const enf_view_region *outer, const enf_view_region *other) {
     count = unite_same(corners, count);
     if (count < 3) {
         make_thin(region, (const double(*)[2])corners, count);
@@ -137,7 +141,7 @@ int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t c
     }
     memcpy(region->corners, corners, (size_t)region->count * sizeof *corners);
     region->area = enf_polygon_area((const double(*)[2])corners, region->count);
-    draw_lines(region, outer);
+    draw_lines(region, (const enf_view_region *const[2]){outer, other});
     return count - region->count;
 }
 

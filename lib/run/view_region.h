@@ -31,11 +31,11 @@ typedef struct enf_view_region {
 } enf_view_region;
 
 /// Counter-clockwise corners become a region. Corners that are the same up to rounding are one. Changes the
-/// corners given: more than `edges_max` lose edges. Edges that lie on lines of `outer` (which clipped the
-/// corners; or null) keep those lines: the slack does not add up from portal to portal. Returns the number of
-/// edges removed.
+/// corners given: more than `edges_max` lose edges. Edges that lie on lines of `outer` or `other` (which
+/// clipped the corners, or have them; or null) keep those lines: the slack does not add up from portal to
+/// portal. Both must lie elsewhere. Returns the number of edges removed.
 int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max,
-                        const enf_view_region *outer);
+                        const enf_view_region *outer, const enf_view_region *other);
 
 /// The region of a rectangle.
 void enf_region_make_rectangle(enf_view_region *region, const double rectangle[4]);

@@ -13,6 +13,9 @@ static const double near_share = 1e-7;
 /// The distance from a plane is right up to a few roundings.
 static const double facing_share = 1e-10;
 
+/// The pieces of a portal's polygons become one region if that is larger by at most this share.
+static const double join_waste = 1;
+
 /// A visit's portal that is looked at.
 typedef struct look {
     int32_t visit, portal, space; ///< the space before it
@@ -50,7 +53,7 @@ static uint64_t find_facing(const enf_view *view, const enf_file_portal *portal,
 static void make_region(enf_view *view, double (*corners)[2], int32_t count, const look *look) {
     if (view->options.rectangles) {
         const double *outer = look->clipping.region->rectangle;
-        enf_region_make(&view->region, corners, count, ENF_VIEW_EDGES_MAX, NULL);
+        enf_region_make(&view->region, corners, count, ENF_VIEW_EDGES_MAX, NULL, NULL);
         double r[4];
         for (int i = 0; i < 4; i++) // the slack that lines have may have led beyond
             r[i] =
@@ -58,8 +61,7 @@ static void make_region(enf_view *view, double (*corners)[2], int32_t count, con
         enf_region_make_rectangle(&view->region, r);
         return;
     }
-    view->visible.stats.edges_removed +=
-        enf_region_make(&view->region, corners, count, view->options.edges_max, look->clipping.region);
+    enf_region_make(&view->region, corners, count, ENF_VIEW_EDGES_MAX, look->clipping.region, NULL);
 }
 
 /// A region passes. False: no room.
@@ -99,7 +101,7 @@ static bool join_pieces(enf_view *view, const look *look) {
     }
     if (view->piece_count > 1) {
         count = enf_hull(view->corners, count);
-        if (count > 2 && enf_polygon_area((const double(*)[2])view->corners, count) > 1.125 * sum)
+        if (count > 2 && enf_polygon_area((const double(*)[2])view->corners, count) > (1 + join_waste) * sum)
             return false;
     }
     make_region(view, view->corners, count, look);
