@@ -25,7 +25,7 @@ typedef struct setting {
 
 static const setting settings[] = {
     {"rect", {.rectangles = true}},
-    {"all r1", {.edges_max = 32, .regions_max = 1}}, {"all r2", {.edges_max = 32, .regions_max = 2}}, {"all r8", {.edges_max = 32, .regions_max = 8}}, {"all r16", {.edges_max = 32, .regions_max = 16}}, {"all r256", {.edges_max = 32, .regions_max = 256,.visit_capacity=60000}},{"rect r256", {.rectangles=true, .regions_max = 256,.visit_capacity=60000}},
+    {"rect, no pvs", {.rectangles = true, .without = ENF_VIEW_PVS}},
     {"4", {.edges_max = 4}},
     {"4, no pvs", {.edges_max = 4, .without = ENF_VIEW_PVS}},
     {"8", {.edges_max = 8}},

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { EDGES_DEFAULT = 8, REGIONS_DEFAULT = 4, TRANSFORMS_DEFAULT = 4, VISITS_DEFAULT = 16384 };
+enum { EDGES_DEFAULT = 8, REGIONS_DEFAULT = 8, TRANSFORMS_DEFAULT = 4, VISITS_DEFAULT = 16384 };
 
 static enf_status fill_options(enf_view *view, const enf_view_options *options, enf_error *error) {
     enf_view_options *o = &view->options;

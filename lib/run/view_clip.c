@@ -18,7 +18,7 @@ typedef struct pad {
 
 void enf_region_measure(enf_view_region *region, const enf_view_lens *lens) {
     const double *g = lens->gram;
-    for (int32_t i = 0; i < region->count; i++) {
+    for (int32_t i = 0; i < region->line_count; i++) {
         enf_view_line *l = &region->lines[i];
         double square = l->a * l->a * g[0] + l->b * l->b * g[1] + l->c * l->c * g[2] +
                         2 * (l->a * l->b * g[3] + l->a * l->c * g[4] + l->b * l->c * g[5]);
@@ -141,7 +141,7 @@ enf_view_outcome enf_view_clip(const enf_view_clipping *c, const double plane[4]
     if (!(c->without & ENF_VIEW_RECTANGLE) && misses_rectangle(c->region->rectangle, corners, pad.count))
         return ENF_CLIP_OUT_RECTANGLE;
     if (c->without & ENF_VIEW_POLYGON) return ENF_CLIP_WHOLE;
-    for (int32_t i = 0; i < c->region->count && pad.count > 0; i++) {
+    for (int32_t i = 0; i < c->region->line_count && pad.count > 0; i++) {
         const enf_view_line *l = &c->region->lines[i];
         const double f[4] = {l->a, l->b, l->c, 0};
         if (!keep_side(&pad, f)) return ENF_CLIP_WHOLE;

@@ -43,7 +43,7 @@ static inline bool enf_region_misses_sphere(const enf_view_region *region, const
                                             const double centre[3], double radius) {
     double c[3];
     enf_lens_project(lens, centre, c);
-    for (int32_t i = 0; i < region->count; i++) {
+    for (int32_t i = 0; i < region->line_count; i++) {
         const enf_view_line *l = &region->lines[i];
         if (l->a * c[0] + l->b * c[1] + l->c * c[2] < -radius * l->length) return true;
     }

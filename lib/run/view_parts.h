@@ -37,7 +37,7 @@ struct enf_view {
     double corners[ENF_VIEW_CORNERS][2];
     enf_view_region region; ///< under construction
     double region_corners[ENF_VIEW_EDGES_MAX][2];
-    enf_view_line region_lines[ENF_VIEW_EDGES_MAX];
+    enf_view_line region_lines[ENF_VIEW_LINES];
 };
 
 /// Looks from the eye's cell on, until nothing waits. False: capacity ran out.

@@ -18,14 +18,14 @@ bool enf_queue_create(enf_view_queue *q, const enf_view_options *options) {
                           .edges_max = edges_max,
                           .regions_max = options->regions_max,
                           .rectangles = options->rectangles};
-    if (n > SIZE_MAX / 2 / ((size_t)edges_max * sizeof *q->lines)) return false;
+    if (n > SIZE_MAX / 2 / (((size_t)edges_max + 4) * sizeof *q->lines)) return false;
     q->slot_mask = (uint32_t)(slots - 1);
     q->visits = malloc(n * sizeof *q->visits);
     q->places = malloc(n * sizeof *q->places);
     q->waiting = malloc(n * sizeof *q->waiting);
     q->slots = calloc(slots, sizeof *q->slots);
     q->corners = malloc(n * (size_t)edges_max * sizeof *q->corners);
-    q->lines = malloc(n * (size_t)edges_max * sizeof *q->lines);
+    q->lines = malloc(n * ((size_t)edges_max + 4) * sizeof *q->lines);
     return q->visits && q->places && q->waiting && q->slots && q->corners && q->lines;
 }
 
@@ -142,10 +142,10 @@ static void store(const enf_view_queue *q, enf_view_region *region, const enf_vi
 static void add_visit(enf_view_queue *q, enf_view_place *place, const enf_view_arrival *arrival,
                       enf_visible *visible) {
     int32_t number = q->visit_count++;
-    size_t first = (size_t)number * (size_t)q->edges_max;
+    size_t edges = (size_t)q->edges_max;
     enf_view_visit *visit = &q->visits[number];
-    visit->region.corners = q->corners + first;
-    visit->region.lines = q->lines + first;
+    visit->region.corners = q->corners + (size_t)number * edges;
+    visit->region.lines = q->lines + (size_t)number * (edges + 4);
     store(q, &visit->region, arrival->region, &visible->stats);
     visit->place = (int32_t)(place - q->places);
     visit->next = place->first;
@@ -184,7 +184,7 @@ static bool unite(const enf_view_queue *q, enf_view_region *region, const enf_vi
         return true;
     }
     double corners[ENF_VIEW_CORNERS][2], hull_corners[ENF_VIEW_EDGES_MAX][2];
-    enf_view_line hull_lines[ENF_VIEW_EDGES_MAX];
+    enf_view_line hull_lines[ENF_VIEW_LINES];
     enf_view_region hull = {.corners = hull_corners, .lines = hull_lines};
     int32_t count = enf_view_hull(region, other, corners);
     if (count > 2 && enf_polygon_area((const double(*)[2])corners, count) > most) return false;
@@ -211,7 +211,7 @@ static void replace_by_rectangle(const enf_view_queue *q, enf_view_region *regio
         return;
     }
     double corners[4][2] = {{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}}, kept_corners[4][2];
-    enf_view_line kept_lines[4];
+    enf_view_line kept_lines[ENF_VIEW_LINES];
     enf_view_region kept = {.corners = kept_corners, .lines = kept_lines};
     enf_region_make(&kept, corners, 4, q->edges_max, region, other);
     enf_region_copy(region, &kept);

@@ -55,42 +55,56 @@ static double support(const double (*corners)[2], int32_t count, double a, doubl
     return -least;
 }
 
-/// A line of a region on which an edge lies, so that it need not move outwards again; or null.
-static const enf_view_line *find_line(const enf_view_region *known, const enf_view_region *made,
-                                      int32_t edge) {
-    const double(*corners)[2] = (const double(*)[2])made->corners;
-    const double *from = corners[edge], *to = corners[edge + 1 < made->count ? edge + 1 : 0];
-    for (int32_t i = 0; i < known->count; i++) {
-        const enf_view_line *l = &known->lines[i];
-        if (fabs(l->a * from[0] + l->b * from[1] + l->c) <= on_line &&
-            fabs(l->a * to[0] + l->b * to[1] + l->c) <= on_line &&
-            support(corners, made->count, l->a, l->b) <= l->c + on_line)
-            return l;
-    }
+/// What lines are drawn around: corners, and regions whose lines may be kept.
+typedef struct drawing {
+    const double (*corners)[2];
+    int32_t count;
+    bool thin;
+    const enf_view_region *known[2]; ///< or null
+} drawing;
+
+/// A line that is there already, on which an edge lies, so that it need not move outwards again; or null.
+static const enf_view_line *find_line(const drawing *drawing, const double from[2], const double to[2]) {
+    for (int k = 0; k < 2; k++)
+        for (int32_t i = 0; drawing->known[k] && i < drawing->known[k]->line_count; i++) {
+            const enf_view_line *l = &drawing->known[k]->lines[i];
+            if (fabs(l->a * from[0] + l->b * from[1] + l->c) <= on_line &&
+                fabs(l->a * to[0] + l->b * to[1] + l->c) <= on_line &&
+                support(drawing->corners, drawing->count, l->a, l->b) <= l->c + on_line)
+                return l;
+        }
     return NULL;
 }
 
-static void draw_lines(enf_view_region *region, const enf_view_region *const known[2]) {
-    const double(*corners)[2] = (const double(*)[2])region->corners;
-    int32_t count = region->count;
-    bool thin = !(region->area > thin_area);
-    for (int32_t i = 0; i < count; i++) {
-        const double *from = corners[i], *to = corners[i + 1 < count ? i + 1 : 0];
-        double u[2] = {to[0] - from[0], to[1] - from[1]};
-        double length = sqrt(u[0] * u[0] + u[1] * u[1]);
-        enf_view_line *line = &region->lines[i];
-        const enf_view_line *same = known[0] ? find_line(known[0], region, i) : NULL;
-        if (!same && known[1]) same = find_line(known[1], region, i);
-        if (same) {
-            *line = *same;
-            continue;
-        }
-        line->a = length > 0 ? -u[1] / length : 1;
-        line->b = length > 0 ? u[0] / length : 0;
-        line->c = -(line->a * from[0] + line->b * from[1]);
-        if (thin || length < short_edge) line->c = fmax(line->c, support(corners, count, line->a, line->b));
-        line->c += ENF_VIEW_SLACK;
+static void draw_line(const drawing *drawing, const double from[2], const double to[2], enf_view_line *line) {
+    const enf_view_line *same = find_line(drawing, from, to);
+    if (same) {
+        *line = *same;
+        return;
     }
+    double u[2] = {to[0] - from[0], to[1] - from[1]};
+    double length = sqrt(u[0] * u[0] + u[1] * u[1]);
+    line->a = length > 0 ? -u[1] / length : 1;
+    line->b = length > 0 ? u[0] / length : 0;
+    line->c = -(line->a * from[0] + line->b * from[1]);
+    if (drawing->thin || length < short_edge)
+        line->c = fmax(line->c, support(drawing->corners, drawing->count, line->a, line->b));
+    line->c += ENF_VIEW_SLACK;
+}
+
+static void draw_lines(enf_view_region *region, const drawing *drawing) {
+    for (int32_t i = 0; i < region->count; i++)
+        draw_line(drawing, region->corners[i], region->corners[i + 1 < region->count ? i + 1 : 0],
+                  &region->lines[i]);
+    region->line_count = region->count;
+}
+
+/// A polygon that lost edges has grown; its rectangle has not.
+static void draw_rectangle(enf_view_region *region, const drawing *drawing) {
+    const double *r = region->rectangle;
+    const double corners[4][2] = {{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}};
+    for (int i = 0; i < 4; i++)
+        draw_line(drawing, corners[i], corners[(i + 1) % 4], &region->lines[region->line_count++]);
 }
 
 void enf_region_make_rectangle(enf_view_region *region, const double r[4]) {
@@ -103,7 +117,7 @@ void enf_region_make_rectangle(enf_view_region *region, const double r[4]) {
     };
     memmove(region->rectangle, r, sizeof region->rectangle);
     region->area = (r[2] - r[0]) * (r[3] - r[1]);
-    region->count = 4;
+    region->count = region->line_count = 4;
     memcpy(region->corners, corners, sizeof corners);
     memcpy(region->lines, lines, sizeof lines);
 }
@@ -123,7 +137,8 @@ static void make_thin(enf_view_region *region, const double (*corners)[2], int32
     region->count = 4;
     bound(box, 4, region->rectangle);
     region->area = fabs(enf_polygon_area(box, 4));
-    draw_lines(region, (const enf_view_region *const[2]){NULL, NULL});
+    const drawing drawing = {.corners = box, .count = 4, .thin = true};
+    draw_lines(region, &drawing);
 }
 
 int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max,
@@ -133,30 +148,40 @@ int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t c
         make_thin(region, (const double(*)[2])corners, count);
         return 0;
     }
+    double all[ENF_VIEW_CORNERS][2];
+    int32_t all_count = count;
+    memcpy(all, corners, (size_t)count * sizeof *corners);
     bound((const double(*)[2])corners, count, region->rectangle);
-    region->count = count > edges_max ? enf_polygon_simplify(corners, count, edges_max) : count;
-    if (region->count > edges_max) { // not convex
+    count = count > edges_max ? enf_polygon_simplify(corners, count, edges_max) : count;
+    if (count > edges_max) { // not convex
         enf_region_make_rectangle(region, region->rectangle);
-        return count - 4;
+        return all_count - 4;
     }
-    memcpy(region->corners, corners, (size_t)region->count * sizeof *corners);
-    region->area = enf_polygon_area((const double(*)[2])corners, region->count);
-    draw_lines(region, (const enf_view_region *const[2]){outer, other});
-    return count - region->count;
+    region->count = count;
+    memcpy(region->corners, corners, (size_t)count * sizeof *corners);
+    region->area = enf_polygon_area((const double(*)[2])corners, count);
+    const drawing drawing = {.corners = (const double(*)[2])all,
+                             .count = all_count,
+                             .thin = !(region->area > thin_area),
+                             .known = {outer, other}};
+    draw_lines(region, &drawing);
+    if (count < all_count) draw_rectangle(region, &drawing);
+    return all_count - count;
 }
 
 void enf_region_copy(enf_view_region *to, const enf_view_region *from) {
     memcpy(to->rectangle, from->rectangle, sizeof to->rectangle);
     to->area = from->area;
     to->count = from->count;
+    to->line_count = from->line_count;
     memcpy(to->corners, from->corners, (size_t)from->count * sizeof *from->corners);
-    memcpy(to->lines, from->lines, (size_t)from->count * sizeof *from->lines);
+    memcpy(to->lines, from->lines, (size_t)from->line_count * sizeof *from->lines);
 }
 
 bool enf_region_contains(const enf_view_region *outer, const enf_view_region *inner) {
     const double *o = outer->rectangle, *i = inner->rectangle, h = ENF_VIEW_SLACK;
     if (!(i[0] >= o[0] - h && i[1] >= o[1] - h && i[2] <= o[2] + h && i[3] <= o[3] + h)) return false;
-    for (int32_t line = 0; line < outer->count; line++) {
+    for (int32_t line = 0; line < outer->line_count; line++) {
         const enf_view_line *l = &outer->lines[line];
         for (int32_t k = 0; k < inner->count; k++)
             if (!(l->a * inner->corners[k][0] + l->b * inner->corners[k][1] + l->c >= -on_line)) return false;

@@ -11,6 +11,7 @@
 #include "enfilade/view.h"
 
 enum {
+    ENF_VIEW_LINES = ENF_VIEW_EDGES_MAX + 4,
     ENF_VIEW_PORTAL_CORNERS = 64, ///< of portals that are clipped; those with more count as their rectangle
     ENF_VIEW_CORNERS = 128        ///< room: while clipping
 };
@@ -21,11 +22,11 @@ typedef struct enf_view_line {
     double length; ///< of the plane's normal in the world, where enf_region_measure has been called
 } enf_view_line;
 
-/// Views into memory of `capacity` corners and lines each.
+/// The lines are those of the corners' edges; of a polygon that lost edges, those of the rectangle, too.
 typedef struct enf_view_region {
     double rectangle[4]; ///< least x, least y, largest x, largest y of the corners
     double area;
-    int32_t count;
+    int32_t count, line_count;
     double (*corners)[2];
     enf_view_line *lines;
 } enf_view_region;

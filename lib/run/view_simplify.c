@@ -12,7 +12,7 @@ static double grow(const double (*corners)[2], int32_t count, int32_t i, double 
     const double *before = corners[(i + count - 1) % count], *from = corners[i];
     const double *to = corners[(i + 1) % count], *after = corners[(i + 2) % count];
     double u[2] = {from[0] - before[0], from[1] - before[1]};
-    double v[2] = {to[0] - after[0], to[1] - after[1]};
+    double v[2] = {after[0] - to[0], after[1] - to[1]};
     double edge[2] = {to[0] - from[0], to[1] - from[1]};
     double turn = u[0] * v[1] - u[1] * v[0];
     double along = edge[0] * v[1] - edge[1] * v[0]; // from + u along / turn

@@ -90,7 +90,7 @@ typedef struct enf_view_options {
     bool every_region;        ///< list a cell once for each region through which it is seen, at most
                               ///< `regions_max` times; false: once, with one region around all of them
     uint32_t without;         ///< enf_view_test that are left out, to measure them
-    int32_t regions_max;      ///< apart for each cell; what comes later joins them. 0: 4
+    int32_t regions_max;      ///< apart for each cell; what comes later joins them. 0: 8
     int32_t transforms_max;   ///< portals that transform on a way; 0: 4; < 0: none
     int32_t visit_capacity;   ///< cells and regions altogether; 0: by the world, at most 16384
     double pixels_min;        ///< portals whose region has a smaller area are not passed; 0: all are
