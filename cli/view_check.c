@@ -159,7 +159,7 @@ static int find(const view_check *check, const enf_visible *visible, int32_t tri
 
 /// An eye on an edge of a wall touches cells with which its own cell has nothing to do there.
 static bool begins_here(const view_check *check, const check_camera *look, const double direction[3]) {
-    double point[3], step = 1e-6 * reach(check->view);
+    double point[3], step = 1e-9 * reach(check->view);
     for (int a = 0; a < 3; a++) point[a] = look->camera.eye[a] + step * direction[a];
     int32_t cell = enf_world_locate(check->world, point, look->place.tetrahedron).cell;
     if (cell == look->place.cell) return true;
@@ -175,17 +175,18 @@ static bool begins_here(const view_check *check, const check_camera *look, const
 }
 
 static void tell(const view_check *check, const check_camera *look, double x, double y, first_hit hit,
-                 int found) {
+                 int found, const double d[3]) {
     if (!check->talks) return;
     const double *e = look->camera.eye;
-    printf("  miss (%s): eye %.17g %.17g %.17g cell %" PRId32 ", screen %.9g %.9g, triangle %" PRId32
-           " at %.9g\n",
-           found ? "region" : "cell", e[0], e[1], e[2], look->place.cell, x, y, hit.triangle, hit.t);
+    printf("  miss (%s): direction %.17g %.17g %.17g eye %.17g %.17g %.17g cell %" PRId32
+           ", screen %.9g %.9g, triangle %" PRId32 " at %.9g\n",
+           found ? "region" : "cell", d[0], d[1], d[2], e[0], e[1], e[2], look->place.cell, x, y,
+           hit.triangle, hit.t);
 }
 
 int64_t view_check_rays(view_check *check, const check_camera *look, const enf_visible *visible, int rays) {
     int64_t before = check->missed_cells + check->missed_regions;
-    double least = 1e-9 * reach(check->view);
+    double least = 1e-12 * reach(check->view);
     for (int n = 0; n < rays; n++) {
         double x = 2 * view_check_share(&check->seed) - 1, y = 2 * view_check_share(&check->seed) - 1, d[3];
         view_check_direction(look, x, y, d);
@@ -198,8 +199,8 @@ int64_t view_check_rays(view_check *check, const check_camera *look, const enf_v
         int found = find(check, visible, hit.triangle, x, y);
         if (found == 2) continue;
         int32_t ties[TIES];
-        int count =
-            first_hit_collect(&check->scene, look->camera.eye, d, hit.t - least, hit.t + least, ties, TIES);
+        int count = first_hit_collect(&check->scene, look->camera.eye, d, hit.t * (1 - 1e-9) - 1e3 * least,
+                                      hit.t * (1 + 1e-9) + 1e3 * least, ties, TIES);
         for (int i = 0; i < count && found < 2; i++) {
             int now = find(check, visible, ties[i], x, y);
             found = now > found ? now : found;
@@ -211,7 +212,7 @@ int64_t view_check_rays(view_check *check, const check_camera *look, const enf_v
         }
         check->missed_cells += found == 0;
         check->missed_regions += found == 1;
-        tell(check, look, x, y, hit, found);
+        tell(check, look, x, y, hit, found, d);
     }
     return check->missed_cells + check->missed_regions - before;
 }

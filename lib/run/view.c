@@ -157,9 +157,16 @@ static int32_t find_cell(enf_view *view) {
     return place.cell;
 }
 
+/// The visible set of all cells that the eye touches.
+static bool find_seen(enf_view *view, int32_t cell) {
+    int32_t cells[ENF_SEEN_CELLS] = {cell};
+    int32_t count = enf_seen_touch(view->file, view->camera->eye, ENF_VIEW_NEAR_SHARE * view->reach, cells);
+    return count > 0 && enf_seen_join(&view->seen, view->file, cells, count);
+}
+
 static void look_around(enf_view *view, int32_t cell) {
     enf_visible *visible = &view->visible;
-    bool has_seen = enf_seen_look(&view->seen, view->file, cell);
+    bool has_seen = find_seen(view, cell);
     view->use_seen = has_seen && !(view->options.without & ENF_VIEW_PVS);
     enf_queue_clear(&view->queue);
     if (enf_view_walk(view, cell)) {

@@ -56,11 +56,10 @@ static bool keep_side(pad *pad, const double f[4]) {
     return true;
 }
 
-/// Is the eye so near to the polygon that rounding could hide what is seen past its edges?
-static bool is_near(const enf_view_clipping *c, const double plane[4], const double (*v)[3], int32_t count) {
-    const double *eye = c->lens->eye;
+bool enf_view_is_near(const double eye[3], double near_distance, const double plane[4], const double (*v)[3],
+                      int32_t count) {
     double distance = plane[0] * eye[0] + plane[1] * eye[1] + plane[2] * eye[2] + plane[3];
-    if (fabs(distance) > c->near_distance) return false;
+    if (fabs(distance) > near_distance) return false;
     for (int32_t i = 0; i < count; i++) {
         const double *from = v[i], *to = v[i + 1 < count ? i + 1 : 0];
         double e[3], inward[3], side = 0, square = 0;
@@ -70,7 +69,7 @@ static bool is_near(const enf_view_clipping *c, const double plane[4], const dou
             side += inward[a] * (eye[a] - from[a]);
             square += inward[a] * inward[a];
         }
-        if (side < 0 && side * side > c->near_distance * c->near_distance * square) return false;
+        if (side < 0 && side * side > near_distance * near_distance * square) return false;
     }
     return true;
 }
@@ -132,7 +131,7 @@ static enf_view_outcome project(const enf_view_clipping *c, const double (*verti
 enf_view_outcome enf_view_clip(const enf_view_clipping *c, const double plane[4], const double (*vertices)[3],
                                int32_t count, enf_view_piece *piece) {
     piece->nearest = 0;
-    if (is_near(c, plane, vertices, count)) return ENF_CLIP_WHOLE;
+    if (enf_view_is_near(c->lens->eye, c->near_distance, plane, vertices, count)) return ENF_CLIP_WHOLE;
     if (count > ENF_VIEW_PORTAL_CORNERS) return ENF_CLIP_WHOLE;
     pad pad;
     enf_view_outcome outcome = project(c, vertices, count, &pad);

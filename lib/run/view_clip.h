@@ -35,6 +35,10 @@ typedef struct enf_view_piece {
 enf_view_outcome enf_view_clip(const enf_view_clipping *clipping, const double plane[4],
                                const double (*vertices)[3], int32_t count, enf_view_piece *piece);
 
+/// Is the eye so near to a polygon that rounding could hide what is seen past its edges?
+bool enf_view_is_near(const double eye[3], double near_distance, const double plane[4],
+                      const double (*vertices)[3], int32_t count);
+
 /// Gives the region's lines the lengths that the sphere test needs.
 void enf_region_measure(enf_view_region *region, const enf_view_lens *lens);
 

@@ -8,6 +8,11 @@
 #include "run/view_seen.h"
 #include "run/view_space.h"
 
+/// Nearer to a polygon than this share of the world's size, an eye looks through the whole of it. Corners are
+/// rounded to 2^-53 of the size; at this distance that is 1e-9 on a screen of 90 degrees, a thousandth of the
+/// slack.
+#define ENF_VIEW_NEAR_SHARE 1e-7
+
 enum { ENF_VIEW_PIECES = 16 }; ///< of a portal, that are joined if they make one region
 
 struct enf_view {

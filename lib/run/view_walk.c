@@ -6,10 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/// Nearer to a polygon than this share of the world's size, an eye looks through the whole of it. Corners are
-/// rounded to 2^-53 of the size; at this distance that is 1e-9 on a screen of 90 degrees, a thousandth of the
-/// slack.
-static const double near_share = 1e-7;
 /// The distance from a plane is right up to a few roundings.
 static const double facing_share = 1e-10;
 
@@ -31,7 +27,7 @@ static bool is_left_out(const enf_view *view, enf_view_test test) {
 static enf_view_clipping prepare_clipping(const enf_view *view, const enf_view_visit *visit, int32_t space) {
     return (enf_view_clipping){.lens = &view->spaces.lenses[space],
                                .region = &visit->region,
-                               .near_distance = near_share * view->reach,
+                               .near_distance = ENF_VIEW_NEAR_SHARE * view->reach,
                                .facing_tolerance = facing_share * view->reach,
                                .without = view->options.without};
 }
