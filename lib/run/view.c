@@ -95,17 +95,21 @@ static void list_cells(enf_view *view, bool seen_only) {
 
 /// One region around all those of a place, in the memory of the first.
 static void unite_regions(enf_view *view, const enf_view_place *place, enf_view_visit *first) {
+    enf_view_region *region = &first->region;
     for (int32_t i = place->first; i >= 0; i = view->queue.visits[i].next) {
         const enf_view_visit *visit = &view->queue.visits[i];
         if (visit == first) continue;
         double corners[ENF_VIEW_CORNERS][2];
-        int32_t count = enf_view_hull(&first->region, &visit->region, corners);
-        double rectangle[4];
-        for (int k = 0; k < 4; k++)
-            rectangle[k] = k < 2 ? fmin(first->region.rectangle[k], visit->region.rectangle[k])
-                                 : fmax(first->region.rectangle[k], visit->region.rectangle[k]);
-        enf_region_make(&first->region, corners, count, view->queue.edges_max, NULL, NULL);
-        memcpy(first->region.rectangle, rectangle, sizeof rectangle);
+        int32_t count = enf_view_hull(region, &visit->region, corners);
+        for (int k = 0; k < 4; k++) {
+            double x = region->rectangle[k], y = visit->region.rectangle[k];
+            region->rectangle[k] = (k < 2 ? x < y : x > y) ? x : y;
+        }
+        region->count = enf_polygon_simplify(corners, count, view->queue.edges_max);
+        if (region->count > view->queue.edges_max) // not convex
+            enf_region_make_rectangle(region, region->rectangle);
+        else
+            memcpy(region->corners, corners, (size_t)region->count * sizeof *corners);
     }
 }
 

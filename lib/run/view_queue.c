@@ -130,13 +130,10 @@ static enf_view_place *find_place(enf_view_queue *q, int32_t cell, int32_t space
 /// Keeps a region, with fewer edges if it has too many.
 static void store(const enf_view_queue *q, enf_view_region *region, const enf_view_region *from,
                   enf_view_stats *stats) {
-    if (from->count <= q->edges_max) {
+    if (from->count <= q->edges_max)
         enf_region_copy(region, from);
-        return;
-    }
-    double corners[ENF_VIEW_EDGES_MAX][2];
-    memcpy(corners, from->corners, (size_t)from->count * sizeof *corners);
-    stats->edges_removed += enf_region_make(region, corners, from->count, q->edges_max, from, NULL);
+    else
+        stats->edges_removed += enf_region_simplify(region, from, q->edges_max);
 }
 
 static void add_visit(enf_view_queue *q, enf_view_place *place, const enf_view_arrival *arrival,
@@ -188,8 +185,9 @@ static bool unite(const enf_view_queue *q, enf_view_region *region, const enf_vi
     enf_view_region hull = {.corners = hull_corners, .lines = hull_lines};
     int32_t count = enf_view_hull(region, other, corners);
     if (count > 2 && enf_polygon_area((const double(*)[2])corners, count) > most) return false;
-    stats->edges_removed += enf_region_make(&hull, corners, count, q->edges_max, region, other);
-    enf_region_copy(region, &hull);
+    enf_region_outline(&hull, corners, count);
+    enf_region_draw(&hull, region, other);
+    store(q, region, &hull, stats);
     return true;
 }
 
@@ -213,7 +211,8 @@ static void replace_by_rectangle(const enf_view_queue *q, enf_view_region *regio
     double corners[4][2] = {{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}}, kept_corners[4][2];
     enf_view_line kept_lines[ENF_VIEW_LINES];
     enf_view_region kept = {.corners = kept_corners, .lines = kept_lines};
-    enf_region_make(&kept, corners, 4, q->edges_max, region, other);
+    enf_region_outline(&kept, corners, 4);
+    enf_region_draw(&kept, region, other);
     enf_region_copy(region, &kept);
 }
 
@@ -248,6 +247,7 @@ bool enf_queue_add(enf_view_queue *q, const enf_view_arrival *arrival, enf_visib
         if (q->visits[i].waiting >= 0) wait(q, i, arrival->nearest);
         return true;
     }
+    enf_region_draw(arrival->region, arrival->outer, NULL);
     for (int32_t i = place->first; i >= 0; i = q->visits[i].next)
         if (join(q, i, arrival, visible)) return true;
     if (place->visit_count < q->regions_max && q->visit_count < q->capacity)

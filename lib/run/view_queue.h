@@ -53,7 +53,8 @@ typedef struct enf_view_queue {
 
 /// A region on its way to a cell.
 typedef struct enf_view_arrival {
-    const enf_view_region *region;
+    enf_view_region *region;      ///< lines are drawn when they are needed
+    const enf_view_region *outer; ///< which it was clipped to; or null
     double nearest;
     int32_t cell, space, parent, portal, depth;
 } enf_view_arrival;

@@ -51,7 +51,10 @@ static int32_t unite_same(double (*corners)[2], int32_t count) {
 /// As far out as it takes to have all corners within.
 static double support(const double (*corners)[2], int32_t count, double a, double b) {
     double least = INFINITY;
-    for (int32_t i = 0; i < count; i++) least = fmin(least, a * corners[i][0] + b * corners[i][1]);
+    for (int32_t i = 0; i < count; i++) {
+        double side = a * corners[i][0] + b * corners[i][1];
+        least = side < least ? side : least;
+    }
     return -least;
 }
 
@@ -87,8 +90,10 @@ static void draw_line(const drawing *drawing, const double from[2], const double
     line->a = length > 0 ? -u[1] / length : 1;
     line->b = length > 0 ? u[0] / length : 0;
     line->c = -(line->a * from[0] + line->b * from[1]);
-    if (drawing->thin || length < short_edge)
-        line->c = fmax(line->c, support(drawing->corners, drawing->count, line->a, line->b));
+    if (drawing->thin || length < short_edge) {
+        double least = support(drawing->corners, drawing->count, line->a, line->b);
+        line->c = line->c < least ? least : line->c;
+    }
     line->c += ENF_VIEW_SLACK;
 }
 
@@ -141,32 +146,52 @@ static void make_thin(enf_view_region *region, const double (*corners)[2], int32
     draw_lines(region, &drawing);
 }
 
-int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max,
-                        const enf_view_region *outer, const enf_view_region *other) {
+void enf_region_outline(enf_view_region *region, double (*corners)[2], int32_t count) {
     count = unite_same(corners, count);
+    region->line_count = 0;
     if (count < 3) {
         make_thin(region, (const double(*)[2])corners, count);
-        return 0;
+        return;
     }
-    double all[ENF_VIEW_CORNERS][2];
-    int32_t all_count = count;
-    memcpy(all, corners, (size_t)count * sizeof *corners);
     bound((const double(*)[2])corners, count, region->rectangle);
-    count = count > edges_max ? enf_polygon_simplify(corners, count, edges_max) : count;
-    if (count > edges_max) { // not convex
+    if (count > ENF_VIEW_EDGES_MAX) count = enf_polygon_simplify(corners, count, ENF_VIEW_EDGES_MAX);
+    if (count > ENF_VIEW_EDGES_MAX) { // not convex
         enf_region_make_rectangle(region, region->rectangle);
-        return all_count - 4;
+        return;
     }
     region->count = count;
     memcpy(region->corners, corners, (size_t)count * sizeof *corners);
     region->area = enf_polygon_area((const double(*)[2])corners, count);
-    const drawing drawing = {.corners = (const double(*)[2])all,
-                             .count = all_count,
+}
+
+void enf_region_draw(enf_view_region *region, const enf_view_region *outer, const enf_view_region *other) {
+    if (region->line_count > 0) return;
+    const drawing drawing = {.corners = (const double(*)[2])region->corners,
+                             .count = region->count,
                              .thin = !(region->area > thin_area),
                              .known = {outer, other}};
     draw_lines(region, &drawing);
-    if (count < all_count) draw_rectangle(region, &drawing);
-    return all_count - count;
+}
+
+int32_t enf_region_simplify(enf_view_region *region, const enf_view_region *from, int32_t edges_max) {
+    double corners[ENF_VIEW_EDGES_MAX][2];
+    memcpy(corners, from->corners, (size_t)from->count * sizeof *corners);
+    int32_t count = enf_polygon_simplify(corners, from->count, edges_max);
+    memcpy(region->rectangle, from->rectangle, sizeof region->rectangle);
+    if (count > edges_max) { // not convex
+        enf_region_make_rectangle(region, region->rectangle);
+        return from->count - 4;
+    }
+    region->count = count;
+    memcpy(region->corners, corners, (size_t)count * sizeof *corners);
+    region->area = enf_polygon_area((const double(*)[2])corners, count);
+    const drawing drawing = {.corners = (const double(*)[2])from->corners,
+                             .count = from->count,
+                             .thin = !(region->area > thin_area),
+                             .known = {from, NULL}};
+    draw_lines(region, &drawing);
+    if (count < from->count) draw_rectangle(region, &drawing);
+    return from->count - count;
 }
 
 void enf_region_copy(enf_view_region *to, const enf_view_region *from) {

@@ -31,12 +31,17 @@ typedef struct enf_view_region {
     enf_view_line *lines;
 } enf_view_region;
 
-/// Counter-clockwise corners become a region. Corners that are the same up to rounding are one. Changes the
-/// corners given: more than `edges_max` lose edges. Edges that lie on lines of `outer` or `other` (which
-/// clipped the corners, or have them; or null) keep those lines: the slack does not add up from portal to
-/// portal. Both must lie elsewhere. Returns the number of edges removed.
-int32_t enf_region_make(enf_view_region *region, double (*corners)[2], int32_t count, int32_t edges_max,
-                        const enf_view_region *outer, const enf_view_region *other);
+/// Counter-clockwise corners become a region without lines. Corners that are the same up to rounding are one.
+/// Changes the corners given, if they are more than ENF_VIEW_EDGES_MAX.
+void enf_region_outline(enf_view_region *region, double (*corners)[2], int32_t count);
+
+/// Draws the lines, if there are none. Edges that lie on lines of `outer` or `other` (which clipped the
+/// corners, or have them; or null) keep those lines: the slack does not add up from portal to portal.
+void enf_region_draw(enf_view_region *region, const enf_view_region *outer, const enf_view_region *other);
+
+/// A region of at most `edges_max` edges around one that has its lines drawn, and is at most as wide and
+/// high. Returns the number of edges removed.
+int32_t enf_region_simplify(enf_view_region *region, const enf_view_region *from, int32_t edges_max);
 
 /// The region of a rectangle.
 void enf_region_make_rectangle(enf_view_region *region, const double rectangle[4]);

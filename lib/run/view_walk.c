@@ -47,23 +47,22 @@ static uint64_t find_facing(const enf_view *view, const enf_file_portal *portal,
 }
 
 static void make_region(enf_view *view, double (*corners)[2], int32_t count, const look *look) {
-    if (view->options.rectangles) {
-        const double *outer = look->clipping.region->rectangle;
-        enf_region_make(&view->region, corners, count, ENF_VIEW_EDGES_MAX, NULL, NULL);
-        double r[4];
-        for (int i = 0; i < 4; i++) // the slack that lines have may have led beyond
-            r[i] =
-                i < 2 ? fmax(view->region.rectangle[i], outer[i]) : fmin(view->region.rectangle[i], outer[i]);
-        enf_region_make_rectangle(&view->region, r);
-        return;
+    enf_region_outline(&view->region, corners, count);
+    if (!view->options.rectangles) return;
+    const double *outer = look->clipping.region->rectangle;
+    double r[4];
+    for (int i = 0; i < 4; i++) { // the slack that lines have may have led beyond
+        double x = view->region.rectangle[i];
+        r[i] = (i < 2 ? x < outer[i] : x > outer[i]) ? outer[i] : x;
     }
-    enf_region_make(&view->region, corners, count, ENF_VIEW_EDGES_MAX, look->clipping.region, NULL);
+    enf_region_make_rectangle(&view->region, r);
 }
 
 /// A region passes. False: no room.
-static bool pass(enf_view *view, const look *look, const enf_view_region *region, double nearest) {
+static bool pass(enf_view *view, const look *look, enf_view_region *region, double nearest) {
     const enf_view_visit *visit = &view->queue.visits[look->visit];
     enf_view_arrival arrival = {.region = region,
+                                .outer = look->clipping.region,
                                 .nearest = fmax(nearest, visit->nearest),
                                 .cell = look->passage.to,
                                 .space = look->space,
@@ -164,7 +163,7 @@ static bool clip_polygon(enf_view *view, look *look, const enf_file_portal_polyg
 /// Looks at the polygons; passes on what is seen. False: no room.
 static bool look_through(enf_view *view, look *look, uint64_t facing) {
     const enf_file_portal *portal = &view->file->portals[look->portal];
-    const enf_view_visit *visit = &view->queue.visits[look->visit];
+    enf_view_visit *visit = &view->queue.visits[look->visit];
     bool fits = true;
     view->piece_count = 0;
     look->area = 0;
