@@ -208,11 +208,16 @@ static bool look_at(enf_view *view, look *look) {
         stats->by_pvs++;
         return true;
     }
-    uint64_t facing = UINT64_MAX;
-    if (!is_left_out(view, ENF_VIEW_FACING)) facing = find_facing(view, portal, &look->clipping);
-    if (facing && !is_left_out(view, ENF_VIEW_SPHERE) &&
+    if (!is_left_out(view, ENF_VIEW_SPHERE) &&
         enf_region_misses_sphere(&visit->region, look->clipping.lens, portal->centre, portal->radius)) {
         stats->by_sphere++;
+        return true;
+    }
+    uint64_t facing = UINT64_MAX;
+    if (!is_left_out(view, ENF_VIEW_FACING)) facing = find_facing(view, portal, &look->clipping);
+    if (!facing) {
+        stats->polygons += portal->polygon_count;
+        stats->by_facing += portal->polygon_count;
         return true;
     }
     look->clipping.planes[0] = look->passage.cut ? look->passage.plane : NULL;
