@@ -177,6 +177,7 @@ static void look_around(enf_view *view, int32_t cell) {
         for (int32_t i = 0; i < visible->entry_count; i++) list_entry(view, i);
     } else {
         visible->flags |= ENF_VIEW_OVERFLOW;
+        if (!view->instance) visible->flags &= ~(uint32_t)ENF_VIEW_INCOMPLETE; // no portal transforms
         list_cells(view, has_seen);
     }
 }
