@@ -364,7 +364,7 @@ static void transforms_are_followed(void **state) {
 }
 
 /// Is a point behind a portal's polygon that leads from one cell to another, and the eye not?
-static bool is_behind(const enf_file_view *view, const enf_file_portal_polygon *polygon,
+static bool is_behind(const enf_file_view *view, const enf_file_portal_polygon *polygon, const double eye[3],
                       const double point[3], int32_t from, int32_t to) {
     double side = step_off(polygon->plane, point), foot[3];
     for (int a = 0; a < 3; a++) foot[a] = point[a] - side * polygon->plane[a];
