@@ -9,8 +9,6 @@
 
 enum { LEAF = 4, STACK = 128 };
 
-static const double seam = 1e-9; ///< of a triangle's edge
-
 static const double *corner(const first_hit_scene *scene, int32_t triangle, int k) {
     return scene->view->render_points[scene->view->triangles[triangle].point[k]];
 }
@@ -80,7 +78,7 @@ static void divide(first_hit_scene *scene, int32_t first, int32_t count) {
 }
 
 enf_status first_hit_create(first_hit_scene *scene, const enf_file_view *view, enf_error *error) {
-    *scene = (first_hit_scene){.view = view};
+    *scene = (first_hit_scene){.view = view, .seam = 1e-9};
     size_t count = (size_t)view->triangle_count;
     scene->triangles = malloc((count + 1) * sizeof *scene->triangles);
     scene->nodes = malloc((2 * count + 2) * sizeof *scene->nodes);
@@ -127,6 +125,7 @@ static double hit(const first_hit_scene *scene, const ray *ray, int32_t triangle
     }
     double h[3] = {d[1] * v[2] - d[2] * v[1], d[2] * v[0] - d[0] * v[2], d[0] * v[1] - d[1] * v[0]};
     double determinant = u[0] * h[0] + u[1] * h[1] + u[2] * h[2];
+    double seam = scene->seam;
     if (determinant == 0) return INFINITY;
     double s = (w[0] * h[0] + w[1] * h[1] + w[2] * h[2]) / determinant;
     if (!(s >= -seam && s <= 1 + seam)) return INFINITY;

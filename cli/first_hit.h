@@ -16,6 +16,7 @@ typedef struct first_hit_scene {
     int32_t node_count;
     first_hit_node *nodes;
     int32_t *triangles;
+    double seam; ///< how much larger triangles are taken to be, in lengths of their edges
 } first_hit_scene;
 
 typedef struct first_hit {

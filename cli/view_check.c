@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TIES = 16, TRIES = 200 };
+enum { TIES = 32, TRIES = 200 };
 
 double view_check_share(uint64_t *seed) { // splitmix64
     uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
@@ -157,19 +157,44 @@ static int find(const view_check *check, const enf_visible *visible, int32_t tri
     return best;
 }
 
-/// An eye on an edge of a wall touches cells with which its own cell has nothing to do there.
+/// Is a polygon that near to the eye?
+static bool is_near(const enf_file_view *view, const enf_file_portal_polygon *polygon, const double eye[3],
+                    double distance) {
+    const double *n = polygon->plane;
+    const double(*v)[3] = view->portal_vertices + polygon->vertex_first;
+    if (fabs(n[0] * eye[0] + n[1] * eye[1] + n[2] * eye[2] + n[3]) > distance) return false;
+    for (int32_t i = 0; i < polygon->vertex_count; i++) {
+        const double *p = v[i], *q = v[(i + 1) % polygon->vertex_count];
+        double side = 0, length = 0;
+        for (int a = 0; a < 3; a++) {
+            int b = (a + 1) % 3, c = (a + 2) % 3;
+            side += n[a] * ((q[b] - p[b]) * (eye[c] - p[c]) - (q[c] - p[c]) * (eye[b] - p[b]));
+            length += (q[a] - p[a]) * (q[a] - p[a]);
+        }
+        if (side < -distance * sqrt(length)) return false;
+    }
+    return true;
+}
+
+/// An eye on an edge of a wall touches cells with which its own cell has nothing to do there: is the ray's
+/// first cell linked with the eye's by portals at the eye?
 static bool begins_here(const view_check *check, const check_camera *look, const double direction[3]) {
-    double point[3], step = 1e-9 * reach(check->view);
+    const enf_file_view *view = check->view;
+    double point[3], step = 1e-9 * reach(view);
     for (int a = 0; a < 3; a++) point[a] = look->camera.eye[a] + step * direction[a];
     int32_t cell = enf_world_locate(check->world, point, look->place.tetrahedron).cell;
-    if (cell == look->place.cell) return true;
-    for (int32_t i = 0; i < check->view->portal_count; i++) {
-        const enf_file_portal *p = &check->view->portals[i];
-        double square = 0;
-        for (int a = 0; a < 3; a++)
-            square += (p->centre[a] - look->camera.eye[a]) * (p->centre[a] - look->camera.eye[a]);
-        if (sqrt(square) > p->radius + step) continue;
-        if (p->from == look->place.cell && p->to == cell) return true;
+    int32_t cells[TIES] = {look->place.cell};
+    for (int i = 0, count = 1; i < count; i++) {
+        if (cells[i] == cell) return true;
+        for (int32_t k = 0; k < view->cells[cells[i]].portal_count; k++) {
+            const enf_file_portal *p =
+                &view->portals[view->cell_portals[view->cells[cells[i]].portal_first + k]];
+            bool touches = false, known = false;
+            for (int32_t n = 0; n < p->polygon_count && !touches; n++)
+                touches = is_near(view, &view->portal_polygons[p->polygon_first + n], look->camera.eye, step);
+            for (int n = 0; n < count; n++) known = known || cells[n] == p->to;
+            if (touches && !known && count < TIES) cells[count++] = p->to;
+        }
     }
     return false;
 }
@@ -206,6 +231,12 @@ int64_t view_check_rays(view_check *check, const check_camera *look, const enf_v
             found = now > found ? now : found;
         }
         if (found == 2) continue;
+        first_hit_scene strict = check->scene;
+        strict.seam = 0;
+        if (first_hit_cast(&strict, look->camera.eye, d, least).triangle != hit.triangle) {
+            check->seams++;
+            continue;
+        }
         if (!begins_here(check, look, d)) {
             check->elsewhere++;
             continue;
