@@ -93,12 +93,23 @@ typedef struct sums {
     double listed, triangles, visits;
     int flagged;
     enf_view_stats stats;
-    double *first, *again, *few; ///< seconds of each camera
+    double screens;                          ///< area of the regions
+    double *first, *again, *few, *few_first; ///< seconds of each camera
     int few_count;
 } sums;
 
+static double find_area(const enf_view_entry *entry) {
+    double twice = 0;
+    for (int32_t i = 0; i < entry->vertex_count; i++) {
+        const double *p = entry->vertices[i], *q = entry->vertices[(i + 1) % entry->vertex_count];
+        twice += p[0] * q[1] - p[1] * q[0];
+    }
+    return twice / 2;
+}
+
 static void add_counts(bench *b, const enf_visible *visible, sums *sums) {
     sums->listed += visible->entry_count;
+    for (int32_t i = 0; i < visible->entry_count; i++) sums->screens += find_area(&visible->entries[i]) / 4;
     sums->visits += (double)visible->stats.visits;
     sums->flagged += (visible->flags & ~(uint32_t)ENF_VIEW_GROWN) != 0;
     sums->triangles += count_triangles(b, visible);
@@ -119,7 +130,10 @@ static void run_camera(bench *b, enf_view *view, int number, sums *sums) {
         if (run == 0) sums->first[number] = taken;
         if (run > 0 && taken < sums->again[number]) sums->again[number] = taken;
     }
-    if (visible->entry_count <= b->request->few) sums->few[sums->few_count++] = sums->again[number];
+    if (visible->entry_count <= b->request->few) {
+        sums->few_first[sums->few_count] = sums->first[number];
+        sums->few[sums->few_count++] = sums->again[number];
+    }
     add_counts(b, visible, sums);
 }
 
@@ -141,11 +155,11 @@ static void print_row(const bench *b, const setting *setting, sums *sums) {
         triangles_seen += b->triangles_seen[i];
     }
     size_t few = (size_t)sums->few_count, count = (size_t)b->camera_count;
-    printf("%-14s %-12s %7.2f %7.2f %7.2f %4zu %7.1f %7.1f %7.1f %6.2f %8.1f %7.1f %6.2f %5d\n", b->name,
-           setting->name, 1e6 * cli_median(sums->first, count), 1e6 * cli_median(sums->again, count),
-           few ? 1e6 * cli_median(sums->few, few) : 0, few, sums->visits / n, sums->listed / n,
-           cells_seen / n, sums->listed / cells_seen, sums->triangles / n, triangles_seen / n,
-           sums->triangles / triangles_seen, sums->flagged);
+    printf("%-14s %-12s %7.2f %7.2f %7.2f %7.2f %4zu %7.1f %7.1f %7.1f %6.2f %7.2f %8.1f %7.1f %6.2f %5d\n",
+           b->name, setting->name, 1e6 * cli_median(sums->first, count), 1e6 * cli_median(sums->again, count),
+           few ? 1e6 * cli_median(sums->few_first, few) : 0, few ? 1e6 * cli_median(sums->few, few) : 0, few,
+           sums->visits / n, sums->listed / n, cells_seen / n, sums->listed / cells_seen, sums->screens / n,
+           sums->triangles / n, triangles_seen / n, sums->triangles / triangles_seen, sums->flagged);
     if (b->request->stats) print_stats(&sums->stats, n);
     fflush(stdout);
 }
@@ -155,9 +169,10 @@ static enf_status measure(bench *b, const setting *setting, enf_error *error) {
     enf_status status = enf_view_create(&view, b->check.world, &setting->options, error);
     if (status) return status;
     size_t count = (size_t)b->camera_count + 1;
-    double *times = malloc(3 * count * sizeof *times);
+    double *times = malloc(4 * count * sizeof *times);
     if (times) {
-        sums sums = {.first = times, .again = times + count, .few = times + 2 * count};
+        sums sums = {
+            .first = times, .again = times + count, .few = times + 2 * count, .few_first = times + 3 * count};
         for (int i = 0; i < b->camera_count; i++) run_camera(b, view, i, &sums);
         if (b->camera_count > 0) print_row(b, setting, &sums);
     } else {
@@ -240,8 +255,9 @@ static void print_head(const request *request) {
         printf("%-16s %8s %10s %10s %9s %7s %8s %8s %8s %8s %5s\n", "world", "cameras", "rays", "hits",
                "backs", "lost", "elsewh.", "no cell", "no reg.", "bad cam.", "flags");
     else
-        printf("%-14s %-12s %7s %7s %7s %4s %7s %7s %7s %6s %8s %7s %6s %5s\n", "world", "regions", "us",
-               "again", "few", "few", "visits", "cells", "hit", "ratio", "tri.", "hit", "ratio", "flags");
+        printf("%-14s %-12s %7s %7s %7s %7s %4s %7s %7s %7s %6s %7s %8s %7s %6s %5s\n", "world", "regions",
+               "us", "again", "few", "again", "few", "visits", "cells", "hit", "ratio", "screens", "tri.",
+               "hit", "ratio", "flags");
 }
 
 int cli_bench_run_view(int argc, char **argv) {
@@ -266,7 +282,8 @@ int cli_bench_run_view(int argc, char **argv) {
             "time, after another eye; again, as the next frame does (the least of four); again, of those\n"
             "cameras that list few cells. Then cells looked at, cells listed, cells with a triangle that "
             "rays\n"
-            "hit (the rays find fewer than there are), and the same of triangles. With --check: rays from "
+            "hit (the rays find fewer than there are), screens full of regions, and triangles listed and "
+            "hit. With --check: rays from "
             "eyes\n"
             "anywhere and on portals whose first hit is in no listed cell, or outside its region; backs: "
             "rays\n"

@@ -432,10 +432,10 @@ static void lists_are_in_order(void **state) {
     const enf_file_view *file = enf_world_file(world.world);
     enf_instance *instance = NULL;
     enf_view *view = NULL;
-    int64_t entries = 0;
+    int64_t entries = 0, deep = 0;
     (void)state;
     assert_int_equal(enf_instance_create(&instance, world.world, NULL, NULL), ENF_OK);
-    set_transforms(instance, file, &seed);
+    for (int n = 0; n < 10; n++) set_transforms(instance, file, &seed);
     assert_int_equal(enf_view_create(&view, world.world, NULL, NULL), ENF_OK);
     for (int n = 0; n < 200; n++) {
         double eye[3];
@@ -453,6 +453,7 @@ static void lists_are_in_order(void **state) {
             assert_true(e->nearest >= visible->entries[i - 1].nearest);
             assert_true(e->depth >= 1);
             assert_true(e->vertex_count >= 3 && e->vertex_count <= 8);
+            deep += space->transforms > 1;
             const double *a = space->to_camera, *b = space->from_camera;
             for (int r = 0; r < 3; r++)
                 for (int c = 0; c < 4; c++) {
@@ -468,7 +469,7 @@ static void lists_are_in_order(void **state) {
                 assert_false(visible->entries[i].cell == visible->entries[k].cell &&
                              visible->entries[i].space == visible->entries[k].space);
     }
-    assert_true(entries > 400);
+    assert_true(entries > 400 && deep > 20);
     enf_view_free(view);
     enf_instance_free(instance);
     run_world_free(&world);
@@ -478,6 +479,63 @@ static bool has_cell(const enf_visible *visible, int32_t cell) {
     for (int32_t i = 0; i < visible->entry_count; i++)
         if (visible->entries[i].cell == cell) return true;
     return false;
+}
+
+/// Nothing is seen through a door that is shut, and only the open part of one that is ajar: rays through a
+/// region, not too near to its border, pass there.
+static void doors_hide(void **state) {
+    uint64_t seed = 12;
+    run_world world = run_world_grid(8, true, 6);
+    const enf_file_view *file = enf_world_file(world.world);
+    const enf_view_options options = {.edges_max = 99, .every_region = true, .without = ENF_VIEW_PVS};
+    enf_instance *shut = NULL, *ajar = NULL;
+    enf_view *view = NULL;
+    int64_t tried = 0;
+    (void)state;
+    assert_int_equal(enf_instance_create(&shut, world.world, NULL, NULL), ENF_OK);
+    assert_int_equal(enf_instance_create(&ajar, world.world, NULL, NULL), ENF_OK);
+    assert_int_equal(enf_view_create(&view, world.world, &options, NULL), ENF_OK);
+    for (int32_t i = 0; i < file->portal_count; i += 2) {
+        enf_door door = {.state = ENF_DOOR_CLOSED};
+        assert_int_equal(enf_instance_set_door(shut, i, &door, NULL), ENF_OK);
+        door.state = ENF_DOOR_PARTLY;
+        random_direction(&seed, door.plane);
+        door.plane[3] = -step_off(door.plane, file->portals[i].centre);
+        assert_int_equal(enf_instance_set_door(ajar, i, &door, NULL), ENF_OK);
+    }
+    for (int n = 0; n < 300; n++) {
+        double eye[3];
+        enf_place place;
+        if (!random_eye(&world, &seed, eye, &place)) continue;
+        enf_camera camera = random_camera(eye, &seed);
+        assert_int_equal(enf_view_run(view, shut, &camera)->entry_count, 1);
+        const enf_visible *visible = enf_view_run(view, ajar, &camera);
+        for (int32_t i = 0; i < visible->entry_count; i++) {
+            const enf_view_entry *e = &visible->entries[i];
+            if (e->depth != 1 || file->portals[e->portal].polygon_count > 1) continue;
+            const enf_file_portal_polygon *polygon =
+                &file->portal_polygons[file->portals[e->portal].polygon_first];
+            const double *p = polygon->plane;
+            for (int k = 0; k < 20; k++) {
+                double shares[2] = {run_random_share(&seed), run_random_share(&seed)}, d[3], hit[3];
+                const double *a = e->vertices[0], *b = e->vertices[1 + k % (e->vertex_count - 2)],
+                             *c = e->vertices[2 + k % (e->vertex_count - 2)];
+                double s = shares[0] * shares[1], t = shares[0] * (1 - shares[1]);
+                aim(&camera, a[0] + s * (b[0] - a[0]) + t * (c[0] - a[0]),
+                    a[1] + s * (b[1] - a[1]) + t * (c[1] - a[1]), d);
+                double along = p[0] * d[0] + p[1] * d[1] + p[2] * d[2], at = -step_off(p, eye) / along;
+                for (int x = 0; x < 3; x++) hit[x] = eye[x] + at * d[x];
+                enf_passage passage = enf_instance_passage(ajar, file, e->portal);
+                assert_true(step_off(passage.plane, hit) >= -1e-4);
+                tried++;
+            }
+        }
+    }
+    assert_true(tried > 1000);
+    enf_view_free(view);
+    enf_instance_free(shut);
+    enf_instance_free(ajar);
+    run_world_free(&world);
 }
 
 /// Without an early out the list may be longer, never shorter.
@@ -698,6 +756,14 @@ static void lines_lose_no_corner(void **state) {
         enf_region_draw(&region, NULL, NULL);
         enf_region_simplify(&simple, &region, 4);
         assert_true(enf_region_contains(&region, &region));
+        double moved[24][2]; // out of it by two slacks
+        enf_view_region other = {.corners = memory[1], .lines = lines[1]};
+        for (int32_t i = 0; i < region.count; i++) {
+            moved[i][0] = region.corners[i][0] + 3 * ENF_VIEW_SLACK;
+            moved[i][1] = region.corners[i][1];
+        }
+        enf_region_outline(&other, moved, region.count);
+        assert_false(enf_region_contains(&region, &other));
         for (int32_t k = 0; k < count; k++)
             for (int s = 0; s < 2; s++) {
                 const enf_view_region *r = s ? &simple : &region;
@@ -713,6 +779,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_a_ray_passes_is_listed),
         cmocka_unit_test(doors_are_obeyed),
+        cmocka_unit_test(doors_hide),
         cmocka_unit_test(transforms_are_followed),
         cmocka_unit_test(an_eye_on_a_portal_misses_nothing),
         cmocka_unit_test(lists_are_in_order),
