@@ -510,6 +510,7 @@ static void doors_hide(void **state) {
         enf_camera camera = random_camera(eye, &seed);
         assert_int_equal(enf_view_run(view, shut, &camera)->entry_count, 1);
         const enf_visible *visible = enf_view_run(view, ajar, &camera);
+        if (visible->stats.joined + visible->stats.grown > 0) continue; // larger regions
         for (int32_t i = 0; i < visible->entry_count; i++) {
             const enf_view_entry *e = &visible->entries[i];
             if (e->depth != 1 || file->portals[e->portal].polygon_count > 1) continue;
