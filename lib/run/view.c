@@ -118,6 +118,7 @@ static void list_entry(enf_view *view, int32_t number) {
     enf_view_visit *visit = &queue->visits[view->order[number]];
     const enf_view_place *place = &queue->places[visit->place];
     if (!view->options.every_region && place->visit_count > 1) unite_regions(view, place, visit);
+    visit->region.count = enf_polygon_tidy(visit->region.corners, visit->region.count, ENF_VIEW_SHORTEST);
     int32_t parent = -1;
     if (visit->parent >= 0) {
         const enf_view_visit *from = &queue->visits[visit->parent];

@@ -8,11 +8,6 @@
 static const double on_line = ENF_VIEW_SLACK * 1e-4;
 /// Corners nearer than this are one: it is well within the slack, and well above the rounding.
 static const double same_corner = ENF_VIEW_SLACK * 1e-4;
-/// Of longer edges the direction is right enough: rounding moves the far end of the line, a screen away, by
-/// less than the slack.
-static const double short_edge = 1e-3;
-/// Polygons thinner than this have edges whose ends may have changed sides.
-static const double thin_area = 1e-5;
 
 double enf_polygon_area(const double (*corners)[2], int32_t count) {
     double sum = 0;
@@ -62,7 +57,6 @@ static double support(const double (*corners)[2], int32_t count, double a, doubl
 typedef struct drawing {
     const double (*corners)[2];
     int32_t count;
-    bool thin;
     const enf_view_region *known[2]; ///< or null
 } drawing;
 
@@ -89,12 +83,7 @@ static void draw_line(const drawing *drawing, const double from[2], const double
     double length = sqrt(u[0] * u[0] + u[1] * u[1]);
     line->a = length > 0 ? -u[1] / length : 1;
     line->b = length > 0 ? u[0] / length : 0;
-    line->c = -(line->a * from[0] + line->b * from[1]);
-    if (drawing->thin || length < short_edge) {
-        double least = support(drawing->corners, drawing->count, line->a, line->b);
-        line->c = line->c < least ? least : line->c;
-    }
-    line->c += ENF_VIEW_SLACK;
+    line->c = support(drawing->corners, drawing->count, line->a, line->b) + ENF_VIEW_SLACK;
 }
 
 static void draw_lines(enf_view_region *region, const drawing *drawing) {
@@ -142,7 +131,7 @@ static void make_thin(enf_view_region *region, const double (*corners)[2], int32
     region->count = 4;
     bound(box, 4, region->rectangle);
     region->area = fabs(enf_polygon_area(box, 4));
-    const drawing drawing = {.corners = box, .count = 4, .thin = true};
+    const drawing drawing = {.corners = box, .count = 4};
     draw_lines(region, &drawing);
 }
 
@@ -166,10 +155,8 @@ void enf_region_outline(enf_view_region *region, double (*corners)[2], int32_t c
 
 void enf_region_draw(enf_view_region *region, const enf_view_region *outer, const enf_view_region *other) {
     if (region->line_count > 0) return;
-    const drawing drawing = {.corners = (const double(*)[2])region->corners,
-                             .count = region->count,
-                             .thin = !(region->area > thin_area),
-                             .known = {outer, other}};
+    const drawing drawing = {
+        .corners = (const double(*)[2])region->corners, .count = region->count, .known = {outer, other}};
     draw_lines(region, &drawing);
 }
 
@@ -185,10 +172,8 @@ int32_t enf_region_simplify(enf_view_region *region, const enf_view_region *from
     region->count = count;
     memcpy(region->corners, corners, (size_t)count * sizeof *corners);
     region->area = enf_polygon_area((const double(*)[2])corners, count);
-    const drawing drawing = {.corners = (const double(*)[2])from->corners,
-                             .count = from->count,
-                             .thin = !(region->area > thin_area),
-                             .known = {from, NULL}};
+    const drawing drawing = {
+        .corners = (const double(*)[2])from->corners, .count = from->count, .known = {from, NULL}};
     draw_lines(region, &drawing);
     if (count < from->count) draw_rectangle(region, &drawing);
     return from->count - count;
@@ -214,15 +199,25 @@ bool enf_region_contains(const enf_view_region *outer, const enf_view_region *in
     return true;
 }
 
-/// Left of from to, or on it?
+/// Right of from to, or on it?
 static bool turns_right(const double from[2], const double to[2], const double point[2]) {
     return (to[0] - from[0]) * (point[1] - from[1]) - (to[1] - from[1]) * (point[0] - from[0]) <= 0;
 }
 
-/// A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979.
+/// To the nearest multiple of 2^-36, if it is on the screen or not far from it.
+static double snap(double x) {
+    const double magic = 0x1.8p16; // its neighbours are that far away
+    return (x + magic) - magic;
+}
+
+/// A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979. Corners that are the
+/// same up to rounding would give turns that say nothing: so all are snapped to a grid, far finer than the
+/// slack, whose steps are much larger than rounding.
 int32_t enf_hull(double (*points)[2], int32_t count) {
     double chain[2 * ENF_VIEW_CORNERS + 2][2];
     if (count > ENF_VIEW_CORNERS) count = ENF_VIEW_CORNERS;
+    for (int32_t i = 0; i < count; i++)
+        for (int a = 0; a < 2; a++) points[i][a] = snap(points[i][a]);
     for (int32_t i = 1; i < count; i++) { // few, and often sorted
         double x = points[i][0], y = points[i][1];
         int32_t j = i;

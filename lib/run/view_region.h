@@ -60,4 +60,9 @@ double enf_polygon_area(const double (*corners)[2], int32_t count);
 /// prolonged, add the least area (the thesis, 2.3.4). Returns how many are left.
 int32_t enf_polygon_simplify(double (*corners)[2], int32_t count, int32_t edges_max);
 
+/// Removes edges shorter than `shortest`, whose directions may be rounded away: the neighbours are prolonged
+/// where they meet near by, otherwise a corner goes. At least a triangle is left; returns the number of
+/// corners.
+int32_t enf_polygon_tidy(double (*corners)[2], int32_t count, double shortest);
+
 #endif

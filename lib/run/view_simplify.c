@@ -25,6 +25,30 @@ static double grow(const double (*corners)[2], int32_t count, int32_t i, double 
     return isfinite(area) && isfinite(meet[0]) && isfinite(meet[1]) ? area : INFINITY;
 }
 
+/// Edge i goes, its ends become one corner.
+static int32_t remove_edge(double (*corners)[2], int32_t count, int32_t i, const double corner[2]) {
+    int32_t gone = (i + 1) % count;
+    memcpy(corners[i], corner, sizeof *corners);
+    memmove(corners + gone, corners + gone + 1, (size_t)(count - gone - 1) * sizeof *corners);
+    return count - 1;
+}
+
+int32_t enf_polygon_tidy(double (*corners)[2], int32_t count, double shortest) {
+    for (int32_t i = 0; i < count && count > 3;) {
+        const double *from = corners[i], *to = corners[i + 1 < count ? i + 1 : 0];
+        double u = to[0] - from[0], v = to[1] - from[1], meet[2];
+        if (u * u + v * v >= shortest * shortest) {
+            i++;
+            continue;
+        }
+        bool meets = grow((const double(*)[2])corners, count, i, meet) < shortest * shortest;
+        if (!meets) memcpy(meet, from, sizeof meet);
+        count = remove_edge(corners, count, i, meet);
+        i = 0;
+    }
+    return count;
+}
+
 int32_t enf_polygon_simplify(double (*corners)[2], int32_t count, int32_t edges_max) {
     while (count > edges_max) {
         double least = INFINITY, best[2] = {0, 0}, meet[2];
@@ -37,10 +61,7 @@ int32_t enf_polygon_simplify(double (*corners)[2], int32_t count, int32_t edges_
             memcpy(best, meet, sizeof best);
         }
         if (edge < 0) break; // not convex
-        int32_t gone = (edge + 1) % count;
-        memcpy(corners[edge], best, sizeof best);
-        memmove(corners + gone, corners + gone + 1, (size_t)(count - gone - 1) * sizeof *corners);
-        count--;
+        count = remove_edge(corners, count, edge, best);
     }
     return count;
 }

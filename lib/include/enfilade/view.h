@@ -38,6 +38,10 @@ extern "C" {
 /// thousand times less at the distance at which portals are no longer looked through whole.
 #define ENF_VIEW_SLACK 1e-6
 
+/// Edges of clip regions are at least this long, but for the shortest of a region thinner than that: so the
+/// direction of each is right, and clipping with its line is.
+#define ENF_VIEW_SHORTEST 1e-5
+
 #define ENF_VIEW_EDGES_MAX 32 ///< of a region, also if its edges are unlimited
 
 /// A perspective camera, in the convention of columns: clip = matrix * (x, y, z, 1), row after row. A point
@@ -108,8 +112,8 @@ typedef struct enf_view_entry {
     int32_t depth;               ///< portals passed, on the way first found
     int32_t space;               ///< of `spaces`
     int32_t vertex_count;        ///< of the clip region, counter-clockwise
-    const double (*vertices)[2]; ///< x / w, y / w. What is seen of the cell is within ENF_VIEW_SLACK of the
-                                 ///< polygon, per portal passed
+    const double (*vertices)[2]; ///< x / w, y / w. What is seen of the cell is in the polygon, up to
+                                 ///< ENF_VIEW_SHORTEST
     double rectangle[4];         ///< least x, least y, largest x, largest y of what is seen, with the slack.
                                  ///< Of polygons that lost edges it may cut off what was added
     double nearest;              ///< the least depth at which it is entered
