@@ -37,7 +37,7 @@ static const setting settings[] = {
 enum { SETTING_COUNT = sizeof settings / sizeof *settings };
 
 typedef struct request {
-    int cameras, rays, few;
+    int cameras, rays, few, seed;
     bool check, talks, stats;
     double seconds;
 } request;
@@ -223,9 +223,9 @@ static enf_status check_world(bench *b, enf_error *error) {
     }
     if (!status)
         printf("%-16s %8d %10" PRId64 " %10" PRId64 " %9" PRId64 " %7" PRId64 " %8" PRId64 " %8" PRId64
-               " %8" PRId64 " %8d %5d\n",
-               b->name, made, check->rays, check->hits, check->backs, check->lost, check->elsewhere,
-               check->missed_cells, check->missed_regions, bad, flagged);
+               " %8" PRId64 " %8" PRId64 " %8d %5d\n",
+               b->name, made, check->rays, check->hits, check->backs, check->lost, check->unlisted,
+               check->elsewhere + check->seams, check->missed_cells, check->missed_regions, bad, flagged);
     fflush(stdout);
     for (int i = 0; i < SETTING_COUNT; i++) enf_view_free(views[i]);
     return status;
@@ -237,7 +237,7 @@ static int bench_world(const request *request, const char *path) {
     if (status) return status;
     bench b = {.request = request, .name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path};
     enf_error error = {0};
-    if (view_check_create(&b.check, world, 1, &error) ||
+    if (view_check_create(&b.check, world, (uint64_t)request->seed, &error) ||
         (request->check ? check_world(&b, &error) : make_table(&b, &error)))
         status = cli_fail(&error);
     view_check_free(&b.check);
@@ -262,7 +262,7 @@ static void print_head(const request *request) {
 
 int cli_bench_run_view(int argc, char **argv) {
     double cameras = 200, rays = 4000, few = 20;
-    request request = {.seconds = INFINITY};
+    request request = {.seconds = INFINITY, .seed = 1};
     cli_option options[] = {
         {"--check", 0, CLI_FLAG, &request.check, NULL, "look for rays that hit what is not listed", NULL,
          false},
@@ -270,12 +270,14 @@ int cli_bench_run_view(int argc, char **argv) {
         {"--rays", 0, CLI_LENGTH, &rays, "N", "per camera; default 4000", NULL, false},
         {"--few", 0, CLI_LENGTH, &few, "N", "cells, of what counts as few; default 20", NULL, false},
         {"--seconds", 0, CLI_SECONDS, &request.seconds, "S", "of --check, at most, per world", NULL, false},
+        {"--seed", 0, CLI_COUNT, &request.seed, "N", "of the cameras; default 1", NULL, false},
         {"--talk", 0, CLI_FLAG, &request.talks, NULL, "print each miss", NULL, false},
         {"--stats", 0, CLI_FLAG, &request.stats, NULL, "print what each test spared", NULL, false},
         {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench run view",
-        .usage = "[--check] [--cameras N] [--rays N] [--few N] [--seconds S] WORLD.enf ...",
+        .usage = "[--check] [--cameras N] [--rays N] [--few N] [--seconds S] [--seed N] [--talk] [--stats] "
+                 "WORLD.enf ...",
         .summary =
             "Median microseconds of a traversal by the shape of regions, from random eyes, tilted: the "
             "first\n"

@@ -739,6 +739,30 @@ static void edges_removed_add_least(void **state) {
     }
 }
 
+/// Hulls are convex and contain their points, also of corners that are the same but for rounding.
+static void hulls_are_convex(void **state) {
+    uint64_t seed = 13;
+    (void)state;
+    for (int n = 0; n < 50000; n++) {
+        double points[32][2], before[32][2];
+        int32_t count = random_polygon(&seed, points, 3 + (int32_t)(run_random(&seed) % 12)), all = count;
+        for (int32_t i = 0; i < count; i++) // once more, moved by a few roundings
+            for (int a = 0; a < 2; a++)
+                points[all + i][a] = points[i][a] + (double)(run_random(&seed) % 5) * 0x1p-53;
+        all += count;
+        memcpy(before, points, sizeof points);
+        count = enf_hull(points, all);
+        for (int32_t i = 0; count > 2 && i < count; i++)
+            for (int32_t k = 0; k < all; k++) {
+                const double *a = points[i], *b = points[(i + 1) % count], *p = before[k];
+                double side = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+                if (hypot(b[0] - a[0], b[1] - a[1]) > 1e-4) assert_true(side >= -1e-10);
+                const double *c = points[(i + 2) % count];
+                assert_true((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) >= 0);
+            }
+    }
+}
+
 /// Lines have all corners within, also those of polygons as thin as rounding, and simplified ones.
 static void lines_lose_no_corner(void **state) {
     uint64_t seed = 11;
@@ -789,6 +813,7 @@ int main(void) {
         cmocka_unit_test(nonsense_options_are_refused),
         cmocka_unit_test(nonsense_ends),
         cmocka_unit_test(edges_removed_add_least),
+        cmocka_unit_test(hulls_are_convex),
         cmocka_unit_test(lines_lose_no_corner),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
