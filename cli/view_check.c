@@ -231,10 +231,6 @@ int64_t view_check_rays(view_check *check, const check_camera *look, const enf_v
             found = now > found ? now : found;
         }
         if (found == 2) continue;
-        if (check->triangle_first[hit.triangle] == check->triangle_first[hit.triangle + 1]) {
-            check->unlisted++;
-            continue;
-        }
         first_hit_scene strict = check->scene;
         strict.seam = 0;
         if (first_hit_cast(&strict, look->camera.eye, d, least).triangle != hit.triangle) {
@@ -243,6 +239,10 @@ int64_t view_check_rays(view_check *check, const check_camera *look, const enf_v
         }
         if (!begins_here(check, look, d)) {
             check->elsewhere++;
+            continue;
+        }
+        if (check->triangle_first[hit.triangle] == check->triangle_first[hit.triangle + 1]) {
+            check->unlisted++;
             continue;
         }
         check->missed_cells += found == 0;

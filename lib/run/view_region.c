@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "run/view_region.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -206,8 +207,12 @@ static bool turns_right(const double from[2], const double to[2], const double p
 
 /// To the nearest multiple of 2^-36, if it is on the screen or not far from it.
 static double snap(double x) {
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD == 0
     const double magic = 0x1.8p16; // its neighbours are that far away
     return (x + magic) - magic;
+#else
+    return nearbyint(x * 0x1p36) * 0x1p-36;
+#endif
 }
 
 /// A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979. Corners that are the
