@@ -199,6 +199,17 @@ static bool begins_here(const view_check *check, const check_camera *look, const
     return false;
 }
 
+/// Is the cell in which the ray ends listed with the pixel? Then the file's lists of triangles are to blame.
+static bool ends_in_view(const view_check *check, const check_camera *look, const enf_visible *visible,
+                         first_hit hit, double x, double y, const double direction[3]) {
+    double point[3];
+    for (int a = 0; a < 3; a++) point[a] = look->camera.eye[a] + hit.t * (1 - 1e-7) * direction[a];
+    int32_t cell = enf_world_locate(check->world, point, -1).cell;
+    for (int32_t i = 0; i < visible->entry_count; i++)
+        if (visible->entries[i].cell == cell && view_check_covers(&visible->entries[i], x, y)) return true;
+    return false;
+}
+
 static void tell(const view_check *check, const check_camera *look, double x, double y, first_hit hit,
                  int found, const double d[3]) {
     if (!check->talks) return;
@@ -241,7 +252,7 @@ int64_t view_check_rays(view_check *check, const check_camera *look, const enf_v
             check->elsewhere++;
             continue;
         }
-        if (check->triangle_first[hit.triangle] == check->triangle_first[hit.triangle + 1]) {
+        if (ends_in_view(check, look, visible, hit, x, y, d)) {
             check->unlisted++;
             continue;
         }

@@ -23,7 +23,7 @@ typedef struct view_check {
     int64_t rays, hits, backs, lost,
         elsewhere;    ///< elsewhere: from an eye on a wall into a
                       ///< cell that no portal at the eye links with its own
-    int64_t unlisted; ///< of the file: no cell has the triangle
+    int64_t unlisted; ///< the ray's last cell is in view, but has not the triangle in its list
     int64_t seams;    ///< it only hits because triangles are taken a hair larger
     int64_t missed_cells, missed_regions;
     bool talks; ///< about misses

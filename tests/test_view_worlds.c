@@ -10,6 +10,7 @@
 #include "visibility/world_pvs.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -66,11 +67,14 @@ static void check_world(enf_world *world, const char *name, int cameras, int ray
         const enf_visible *visible = enf_view_run(views[n / 10 % SETTINGS], NULL, &look.camera);
         assert_int_equal(visible->cell, look.place.cell);
         cut += visible->entry_count < check.view->cell_count;
+        for (int32_t i = 0; n / 10 % SETTINGS == 3 && i < visible->entry_count; i++) // with all their edges
+            for (int32_t k = 0; k < visible->entries[i].vertex_count; k++)
+                for (int a = 0; a < 2; a++) assert_true(fabs(visible->entries[i].vertices[k][a]) < 1.001);
         missed += view_check_rays(&check, &look, visible, rays);
     }
     print_message("%s: seed %" PRIu64 ", %" PRId64 " hits, %" PRId64 " missed\n", name, seed, check.hits,
                   missed);
-    assert_true(check.hits > 10 * cameras && missed == 0 && cut > 0);
+    assert_true(check.hits > 10 * cameras && missed == 0 && check.unlisted == 0 && cut > 0);
     for (int i = 0; i < SETTINGS; i++) enf_view_free(views[i]);
     view_check_free(&check);
     enf_world_close(world);

@@ -9,6 +9,9 @@
 #include <math.h>
 #include <string.h>
 
+/// Regions are bounded: corners are hardly off the screen. Otherwise the geometry makes no sense.
+static const double far_off = 16;
+
 /// Room for corners while clipping: two polygons, of which one is read and one written.
 typedef struct pad {
     double corners[2][ENF_VIEW_CORNERS][3];
@@ -100,7 +103,7 @@ static bool divide(const pad *pad, enf_view_piece *piece) {
         sum += fabs(piece->corners[i][0]) + fabs(piece->corners[i][1]);
         piece->nearest = v[i][2] < piece->nearest ? v[i][2] : piece->nearest;
     }
-    if (!(sum < 1e15)) return false;
+    if (!(sum < far_off * pad->count)) return false;
     if (enf_polygon_area((const double(*)[2])piece->corners, piece->count) >= 0) return true;
     for (int32_t i = 0, j = piece->count - 1; i < j; i++, j--) {
         double swap[2];

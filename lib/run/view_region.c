@@ -10,6 +10,10 @@ static const double on_line = ENF_VIEW_SLACK * 1e-4;
 /// Corners nearer than this are one: it is well within the slack, and well above the rounding.
 static const double same_corner = ENF_VIEW_SLACK * 1e-4;
 
+/// Rounding turns a line through such an edge by less than the slack over a screen; through a shorter one
+/// maybe by more.
+static const double short_edge = 1e-3;
+
 double enf_polygon_area(const double (*corners)[2], int32_t count) {
     double sum = 0;
     for (int32_t i = 2; i < count; i++) {
@@ -74,32 +78,42 @@ static const enf_view_line *find_line(const drawing *drawing, const double from[
     return NULL;
 }
 
-static void draw_line(const drawing *drawing, const double from[2], const double to[2], enf_view_line *line) {
+/// (a, b) points inwards, at right angles to the edge.
+static void draw_line(const drawing *drawing, const double from[2], const double to[2], double a, double b,
+                      enf_view_line *line) {
     const enf_view_line *same = find_line(drawing, from, to);
     if (same) {
         *line = *same;
         return;
     }
-    double u[2] = {to[0] - from[0], to[1] - from[1]};
-    double length = sqrt(u[0] * u[0] + u[1] * u[1]);
-    line->a = length > 0 ? -u[1] / length : 1;
-    line->b = length > 0 ? u[0] / length : 0;
-    line->c = support(drawing->corners, drawing->count, line->a, line->b) + ENF_VIEW_SLACK;
+    line->a = a;
+    line->b = b;
+    line->c = support(drawing->corners, drawing->count, a, b) + ENF_VIEW_SLACK;
 }
 
-static void draw_lines(enf_view_region *region, const drawing *drawing) {
-    for (int32_t i = 0; i < region->count; i++)
-        draw_line(drawing, region->corners[i], region->corners[i + 1 < region->count ? i + 1 : 0],
-                  &region->lines[i]);
-    region->line_count = region->count;
-}
-
-/// A polygon that lost edges has grown; its rectangle has not.
+/// The sides of the rectangle: they bound where the corners' lines don't.
 static void draw_rectangle(enf_view_region *region, const drawing *drawing) {
     const double *r = region->rectangle;
     const double corners[4][2] = {{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}};
+    static const double inward[4][2] = {{0, 1}, {-1, 0}, {0, -1}, {1, 0}};
     for (int i = 0; i < 4; i++)
-        draw_line(drawing, corners[i], corners[(i + 1) % 4], &region->lines[region->line_count++]);
+        draw_line(drawing, corners[i], corners[(i + 1) % 4], inward[i][0], inward[i][1],
+                  &region->lines[region->line_count++]);
+}
+
+/// A polygon that lost edges has grown, its rectangle has not. And the line of a short edge may go anywhere.
+static void draw_lines(enf_view_region *region, const drawing *drawing, bool has_grown) {
+    double shortest = INFINITY;
+    for (int32_t i = 0; i < region->count; i++) {
+        const double *from = region->corners[i], *to = region->corners[i + 1 < region->count ? i + 1 : 0];
+        double u[2] = {to[0] - from[0], to[1] - from[1]}, length = sqrt(u[0] * u[0] + u[1] * u[1]);
+        shortest = length < shortest ? length : shortest;
+        bool has_length = length > 0;
+        draw_line(drawing, from, to, has_length ? -u[1] / length : 1, has_length ? u[0] / length : 0,
+                  &region->lines[i]);
+    }
+    region->line_count = region->count;
+    if (has_grown || shortest < short_edge) draw_rectangle(region, drawing);
 }
 
 void enf_region_make_rectangle(enf_view_region *region, const double r[4]) {
@@ -133,7 +147,7 @@ static void make_thin(enf_view_region *region, const double (*corners)[2], int32
     bound(box, 4, region->rectangle);
     region->area = fabs(enf_polygon_area(box, 4));
     const drawing drawing = {.corners = box, .count = 4};
-    draw_lines(region, &drawing);
+    draw_lines(region, &drawing, false);
 }
 
 void enf_region_outline(enf_view_region *region, double (*corners)[2], int32_t count) {
@@ -158,7 +172,7 @@ void enf_region_draw(enf_view_region *region, const enf_view_region *outer, cons
     if (region->line_count > 0) return;
     const drawing drawing = {
         .corners = (const double(*)[2])region->corners, .count = region->count, .known = {outer, other}};
-    draw_lines(region, &drawing);
+    draw_lines(region, &drawing, false);
 }
 
 int32_t enf_region_simplify(enf_view_region *region, const enf_view_region *from, int32_t edges_max) {
@@ -175,8 +189,7 @@ int32_t enf_region_simplify(enf_view_region *region, const enf_view_region *from
     region->area = enf_polygon_area((const double(*)[2])corners, count);
     const drawing drawing = {
         .corners = (const double(*)[2])from->corners, .count = from->count, .known = {from, NULL}};
-    draw_lines(region, &drawing);
-    if (count < from->count) draw_rectangle(region, &drawing);
+    draw_lines(region, &drawing, count < from->count);
     return from->count - count;
 }
 

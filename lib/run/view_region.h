@@ -12,7 +12,7 @@
 
 enum {
     ENF_VIEW_LINES = ENF_VIEW_EDGES_MAX + 4,
-    ENF_VIEW_PORTAL_CORNERS = 64, ///< of portals that are clipped; those with more count as their rectangle
+    ENF_VIEW_PORTAL_CORNERS = 64, ///< of portals that are clipped; those with more are looked through whole
     ENF_VIEW_CORNERS = 128        ///< room: while clipping
 };
 
@@ -22,7 +22,8 @@ typedef struct enf_view_line {
     double length; ///< of the plane's normal in the world, where enf_region_measure has been called
 } enf_view_line;
 
-/// The lines are those of the corners' edges; of a polygon that lost edges, those of the rectangle, too.
+/// The lines are those of the corners' edges; of a polygon that lost edges, or has short ones, those of the
+/// rectangle, too.
 typedef struct enf_view_region {
     double rectangle[4]; ///< least x, least y, largest x, largest y of the corners
     double area;
