@@ -13,6 +13,8 @@ static const double same_corner = ENF_VIEW_SLACK * 1e-4;
 /// Rounding turns a line through such an edge by less than the slack over a screen; through a shorter one
 /// maybe by more.
 static const double short_edge = 1e-3;
+/// Area of a polygon that may have corners as sharp as that, in squares of its length.
+static const double thin_share = 1e-3;
 
 double enf_polygon_area(const double (*corners)[2], int32_t count) {
     double sum = 0;
@@ -101,7 +103,8 @@ static void draw_rectangle(enf_view_region *region, const drawing *drawing) {
                   &region->lines[region->line_count++]);
 }
 
-/// A polygon that lost edges has grown, its rectangle has not. And the line of a short edge may go anywhere.
+/// A polygon that lost edges has grown, its rectangle has not. The line of a short edge may go anywhere, and
+/// with the slack the lines of a sharp corner meet far away.
 static void draw_lines(enf_view_region *region, const drawing *drawing, bool has_grown) {
     double shortest = INFINITY;
     for (int32_t i = 0; i < region->count; i++) {
@@ -113,7 +116,9 @@ static void draw_lines(enf_view_region *region, const drawing *drawing, bool has
                   &region->lines[i]);
     }
     region->line_count = region->count;
-    if (has_grown || shortest < short_edge) draw_rectangle(region, drawing);
+    const double *r = region->rectangle, wide = r[2] - r[0], high = r[3] - r[1];
+    bool is_thin = !(region->area > thin_share * (wide * wide + high * high));
+    if (has_grown || is_thin || shortest < short_edge) draw_rectangle(region, drawing);
 }
 
 void enf_region_make_rectangle(enf_view_region *region, const double r[4]) {

@@ -41,7 +41,8 @@ int32_t enf_polygon_tidy(double (*corners)[2], int32_t count, double shortest) {
             i++;
             continue;
         }
-        bool meets = grow((const double(*)[2])corners, count, i, meet) < shortest * shortest;
+        bool meets = grow((const double(*)[2])corners, count, i, meet) < shortest * shortest &&
+                     fabs(meet[0] - from[0]) + fabs(meet[1] - from[1]) < 4 * shortest;
         if (!meets) memcpy(meet, from, sizeof meet);
         count = remove_edge(corners, count, i, meet);
         i = 0;
