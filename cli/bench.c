@@ -21,6 +21,7 @@ static const cli_command benches[] = {
      cli_bench_visibility},
     {"run", "NAME ...: what the runtime takes per question", cli_bench_run},
     {"worlds", "[DIR]: the visible sets of compiled worlds: time and excess", cli_bench_worlds},
+    {"run", "NAME ...: what the runtime takes per question", cli_bench_run},
 };
 
 enum { BENCH_COUNT = sizeof benches / sizeof *benches };

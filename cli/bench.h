@@ -32,5 +32,7 @@ int cli_bench_visibility(int argc, char **argv);
 /// What the runtime takes per question: tables of its own (cli/bench_run.h).
 int cli_bench_run(int argc, char **argv);
 int cli_bench_worlds(int argc, char **argv);
+/// What the runtime takes per question: tables of its own (cli/bench_run.h).
+int cli_bench_run(int argc, char **argv);
 
 #endif

@@ -13,4 +13,7 @@ int cli_bench_run_locate(int argc, char **argv);
 /// Lines of sight and rays, by the portals they pass.
 int cli_bench_run_sight(int argc, char **argv);
 
+/// View traversal: time against error; or, with --check, against rays.
+int cli_bench_run_view(int argc, char **argv);
+
 #endif
