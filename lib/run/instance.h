@@ -15,4 +15,10 @@ typedef struct enf_passage {
 /// The passage of a portal; without an instance all portals are open. The portal must be the world's.
 enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal);
 
+/// Is any door closed? Null: none.
+bool enf_instance_has_shut(const enf_instance *instance);
+
+/// The portals that transform, ascending. Null: none.
+int32_t enf_instance_transforms(const enf_instance *instance, const int32_t **portals);
+
 #endif
