@@ -152,7 +152,7 @@ static void expand(run *r, int32_t begin, int32_t via, int64_t cost) {
     }
     const int32_t *exits = enf_path_exits(paths, passage.to, &count);
     for (int32_t i = 0; i < count; i++)
-        if (passage.matrix || exits[i] != (tail ^ 1))
+        if (!r->contracts || exits[i] != (tail ^ 1)) // a twin may transform
             reach(r, exits[i], cost + enf_path_step(paths, place, enf_path_place(paths, exits[i])),
                   via == FROM_START && begin != paths->head[begin] ? -2 - begin : begin);
 }

@@ -124,7 +124,7 @@ static void add_polygon(const enf_file_view *view, const enf_file_portal_polygon
     double corner[3][3];
     for (int32_t i = 0; i < polygon->vertex_count; i++) {
         const double *vertex = view->portal_vertices[polygon->vertex_first + i];
-        if (i > 1) memcpy(corner[1], corner[2], sizeof corner[1]);
+        if (i > 2) memcpy(corner[1], corner[2], sizeof corner[1]);
         for (int a = 0; a < 3; a++) corner[i < 2 ? i : 2][a] = vertex[a] * scale;
         if (i < 2) continue;
         double edges[2][3], across[3];

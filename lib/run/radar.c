@@ -42,6 +42,8 @@ static void spread(radar *r, int32_t cell, int32_t came, const double place[3], 
 
 static void run(radar *r, int32_t cell, const double place[3]) {
     enf_path_search *search = &r->finder->search;
+    const int32_t *transforms;
+    bool plain = enf_instance_transforms(r->instance, &transforms) == 0; // or else a twin may lead elsewhere
     enf_path_search_begin(search);
     forget_cells(r->finder);
     list_cell(r, cell, -1, 0);
@@ -53,7 +55,7 @@ static void run(radar *r, int32_t cell, const double place[3]) {
         if (passage.to < 0) continue;
         enf_path_come_out(r->finder->paths, portal, passage.matrix, out);
         list_cell(r, passage.to, portal, search->cost[portal]);
-        spread(r, passage.to, passage.matrix ? -1 : portal ^ 1, out, search->cost[portal]);
+        spread(r, passage.to, plain ? portal ^ 1 : -1, out, search->cost[portal]);
     }
 }
 

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Paths against Floyd's algorithm over all directed portals, whatever the doors and transforms: lengths, and
+// portals that add up. With and without contraction and table the answers are the same. Lines against dynamic
+// programming over ever finer samples of the portals.
+#include "run_worlds.h"
+
+#include "enfilade/path.h"
+#include "run/instance.h"
+#include "run/portal_shape.h"
+#include "run/vector.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#ifdef ENFILADE_CLI
+#include "build/gen.h"
+#include "shared_data.h"
+#include <unistd.h>
+#endif
+
+enum { KINDS = 4, FEW = 300 };
+
+/// A world, and paths of four kinds: bit 0: without a table, bit 1: without contraction.
+typedef struct bench {
+    run_world opened;
+    const enf_file_view *view;
+    enf_instance *instance;
+    enf_paths *paths[KINDS];
+    enf_path_finder *finder[KINDS];
+    int32_t *portals[KINDS];
+    double (*middle)[3]; ///< per pair
+    double *table;       ///< Floyd's, per pair of directed portals
+    double size;
+} bench;
+
+static void make_bench(bench *b, run_world opened) {
+    *b = (bench){.opened = opened, .view = enf_world_file(opened.world)};
+    assert_int_equal(enf_instance_create(&b->instance, opened.world, NULL, NULL), ENF_OK);
+    for (int k = 0; k < KINDS; k++) {
+        enf_paths_options options = {sizeof options, (uint64_t)1 << 30, k & 1, k & 2};
+        assert_int_equal(enf_paths_create(&b->paths[k], opened.world, &options, NULL), ENF_OK);
+        assert_int_equal(enf_path_finder_create(&b->finder[k], b->paths[k], NULL, NULL), ENF_OK);
+        b->portals[k] = calloc((size_t)b->view->portal_count + 1, sizeof(int32_t));
+    }
+    b->middle = calloc((size_t)b->view->portal_count / 2 + 1, sizeof *b->middle);
+    for (int32_t i = 0; i < b->view->portal_count / 2; i++)
+        enf_portal_middle(b->view, 2 * i, 1, b->middle[i]);
+    b->size = enf_distance(opened.box_min, opened.box_max);
+}
+
+static void free_bench(bench *b) {
+    for (int k = 0; k < KINDS; k++) {
+        enf_path_finder_free(b->finder[k]);
+        enf_paths_free(b->paths[k]);
+        free(b->portals[k]);
+    }
+    enf_instance_free(b->instance);
+    free(b->middle);
+    free(b->table);
+    run_world_free(&b->opened);
+}
+
+static void come_out(const bench *b, const enf_instance *instance, int32_t portal, double out[3]) {
+    const double *m = enf_instance_passage(instance, b->view, portal).matrix, *at = b->middle[portal / 2];
+    for (int a = 0; a < 3; a++) out[a] = m ? enf_dot(m + 4 * a, at) + m[4 * a + 3] : at[a];
+}
+
+/// Lengths from the entrance of one directed portal to that of another, by R. W. Floyd.
+static void fill_table(bench *b, const enf_instance *instance) {
+    size_t n = (size_t)b->view->portal_count;
+    if (!b->table) b->table = malloc((n * n + 1) * sizeof *b->table);
+    assert_non_null(b->table);
+    for (size_t i = 0; i < n; i++) {
+        enf_passage passage = enf_instance_passage(instance, b->view, (int32_t)i);
+        double out[3];
+        come_out(b, instance, (int32_t)i, out);
+        for (size_t k = 0; k < n; k++) {
+            bool leads = passage.to == b->view->portals[k].from;
+            b->table[i * n + k] = i == k ? 0 : leads ? enf_distance(out, b->middle[k / 2]) : INFINITY;
+        }
+    }
+    for (size_t m = 0; m < n; m++)
+        for (size_t i = 0; i < n; i++)
+            for (size_t k = 0; k < n && b->table[i * n + m] < INFINITY; k++)
+                b->table[i * n + k] = fmin(b->table[i * n + k], b->table[i * n + m] + b->table[m * n + k]);
+}
+
+static double length_by_floyd(const bench *b, const enf_instance *instance, const enf_path_query *query) {
+    const enf_file_cell *start = &b->view->cells[query->from_cell];
+    double best = INFINITY, out[3];
+    if (query->from_cell == query->to_cell)
+        return query->from && query->to ? enf_distance(query->from, query->to) : 0;
+    for (int32_t i = 0; i < start->portal_count; i++) {
+        int32_t first = b->view->cell_portals[start->portal_first + i];
+        for (int32_t last = 0; last < b->view->portal_count; last++) {
+            if (enf_instance_passage(instance, b->view, last).to != query->to_cell) continue;
+            double length = b->table[(size_t)first * (size_t)b->view->portal_count + (size_t)last];
+            come_out(b, instance, last, out);
+            if (query->from) length += enf_distance(query->from, b->middle[first / 2]);
+            if (query->to) length += enf_distance(out, query->to);
+            best = fmin(best, length);
+        }
+    }
+    return best;
+}
+
+/// The portals lead from cell to cell, are open, and their steps add up.
+static void check_portals(const bench *b, const enf_instance *instance, const enf_path_query *query,
+                          const enf_path *path, double tolerance) {
+    double length = 0, at[3];
+    int32_t cell = query->from_cell;
+    if (query->from) memcpy(at, query->from, sizeof at);
+    for (int32_t i = 0; i < path->portal_count; i++) {
+        int32_t portal = query->portals[i];
+        assert_int_equal(b->view->portals[portal].from, cell);
+        if (i > 0 || query->from) length += enf_distance(at, b->middle[portal / 2]);
+        come_out(b, instance, portal, at);
+        cell = enf_instance_passage(instance, b->view, portal).to;
+    }
+    if (query->to) length += enf_distance(at, query->to);
+    assert_int_equal(cell, query->to_cell);
+    assert_true(fabs(length - path->length) <= tolerance);
+    assert_int_equal(path->first, path->portal_count > 0 ? query->portals[0] : -1);
+}
+
+static void check_query(bench *b, const enf_instance *instance, enf_path_query *query) {
+    double expected = length_by_floyd(b, instance, query);
+    enf_path path[KINDS], brief;
+    for (int k = 0; k < KINDS; k++) {
+        enf_paths_info info;
+        enf_paths_get_info(b->paths[k], &info);
+        double tolerance = info.precision * (b->view->portal_count + 4) + 1e-12 * b->size;
+        query->portals = b->portals[k];
+        query->portal_capacity = b->view->portal_count;
+        assert_int_equal(enf_path_find(b->finder[k], instance, query, &path[k], NULL), ENF_OK);
+        assert_int_equal(path[k].is_found, expected < INFINITY);
+        if (!path[k].is_found) continue;
+        if (!(fabs(path[k].length - expected) <= tolerance))
+            fail_msg("kind %d, cells %d to %d: %.17g, not %.17g", k, query->from_cell, query->to_cell,
+                     path[k].length, expected);
+        if (query->from_cell != query->to_cell) check_portals(b, instance, query, &path[k], tolerance);
+        assert_int_equal(path[k].portal_count, path[0].portal_count);
+        assert_true(path[k].length == path[0].length);
+        assert_memory_equal(b->portals[k], b->portals[0], (size_t)path[0].portal_count * sizeof(int32_t));
+        query->portals = NULL;
+        assert_int_equal(enf_path_find(b->finder[k], instance, query, &brief, NULL), ENF_OK);
+        assert_true(brief.first == path[0].first && brief.length == path[0].length);
+    }
+}
+
+static int32_t random_below(uint64_t *seed, int32_t count) {
+    return (int32_t)(run_random(seed) % (uint64_t)count);
+}
+
+static void random_point(const bench *b, uint64_t *seed, double point[3]) {
+    for (int a = 0; a < 3; a++)
+        point[a] =
+            b->opened.box_min[a] + run_random_share(seed) * (b->opened.box_max[a] - b->opened.box_min[a]);
+}
+
+static void check_queries(bench *b, const enf_instance *instance, int count, uint64_t *seed) {
+    for (int n = 0; n < count; n++) {
+        double from[3], to[3];
+        random_point(b, seed, from);
+        random_point(b, seed, to);
+        enf_path_query query = {.size = sizeof query,
+                                .from_cell = random_below(seed, b->view->cell_count),
+                                .to_cell = random_below(seed, b->view->cell_count),
+                                .from = n % 3 ? from : NULL,
+                                .to = n % 2 ? to : NULL};
+        check_query(b, instance, &query);
+    }
+}
+
+static void set_doors(bench *b, int one_in, uint64_t *seed) {
+    for (int32_t i = 0; i < b->view->portal_count; i += 2) {
+        enf_door door = {.state = run_random(seed) % (uint64_t)one_in ? ENF_DOOR_OPEN : ENF_DOOR_CLOSED};
+        assert_int_equal(enf_instance_set_door(b->instance, i, &door, NULL), ENF_OK);
+    }
+}
+
+static void set_transform(bench *b, int32_t portal, uint64_t *seed) {
+    double matrix[12] = {0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0};
+    for (int a = 0; a < 3; a++) matrix[4 * a + 3] = (run_random_share(seed) - 0.5) * b->size;
+    assert_int_equal(enf_instance_set_transform(b->instance, portal, random_below(seed, b->view->cell_count),
+                                                matrix, NULL),
+                     ENF_OK);
+}
+
+static void check_all(bench *b, int count, uint64_t *seed) {
+    int32_t transformed[3];
+    if (b->view->portal_count == 0) return;
+    fill_table(b, NULL);
+    check_queries(b, NULL, count, seed);
+    for (int one_in = 2; one_in < 20; one_in *= 3) {
+        set_doors(b, one_in, seed);
+        fill_table(b, b->instance);
+        check_queries(b, b->instance, count, seed);
+    }
+    for (int i = 0; i < 3; i++) {
+        transformed[i] = random_below(seed, b->view->portal_count);
+        set_transform(b, transformed[i], seed);
+    }
+    set_doors(b, 9, seed);
+    fill_table(b, b->instance);
+    check_queries(b, b->instance, count, seed);
+    for (int i = 0; i < 3; i++) enf_instance_set_transform(b->instance, transformed[i], 0, NULL, NULL);
+    set_doors(b, 1000000000, seed);
+    fill_table(b, b->instance);
+    check_queries(b, b->instance, count / 2, seed);
+}
+
+static uint64_t begin(uint64_t seed) {
+    print_message("seed %llu\n", (unsigned long long)seed);
+    return seed;
+}
+
+static void grids_agree_with_floyd(void **state) {
+    (void)state;
+    uint64_t seed = begin(1);
+    for (int n = 0; n < 12; n++) {
+        bench b;
+        make_bench(&b, run_world_grid(n < 4 ? 2 : n < 9 ? 4 : 6, n % 2, run_random(&seed)));
+        check_all(&b, 60, &seed);
+        free_bench(&b);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(grids_agree_with_floyd),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
