@@ -231,9 +231,163 @@ static void grids_agree_with_floyd(void **state) {
     }
 }
 
+// ---------------------------------------------------------------------------------------------- lines
+
+enum { SAMPLES = 64, ROUNDS = 40 };
+
+/// Samples of a portal about a point: on rings up to a radius, moved onto the portal.
+static int take_samples(const bench *b, int32_t portal, const double about[3], double radius,
+                        double (*samples)[3]) {
+    const double *normal = b->view->portal_polygons[b->view->portals[portal].polygon_first].plane;
+    double side[2][3], helper[3] = {0, 0, 0};
+    helper[fabs(normal[0]) < 0.6 ? 0 : 1] = 1;
+    enf_cross(normal, helper, side[0]);
+    enf_cross(normal, side[0], side[1]);
+    int count = 0;
+    memcpy(samples[count++], about, sizeof *samples);
+    for (int ring = 1; ring <= 4; ring++) {
+        for (int k = 0; k < 12; k++) {
+            double angle = (k + 0.5 * ring) * acos(-1) / 6, at[3];
+            for (int a = 0; a < 3; a++)
+                at[a] = about[a] +
+                        radius * ring / 4 * (cos(angle) * side[0][a] + sin(angle) * side[1][a]);
+            if (enf_portal_nearest(b->view, portal, at, samples[count])) count++;
+        }
+    }
+    return count;
+}
+
+/// The length of the shortest line through samples, which become finer about it.
+static double length_by_samples(const bench *b, const enf_path_query *query, const enf_path *path) {
+    int32_t n = path->portal_count;
+    double(*best)[3] = calloc((size_t)n, sizeof *best), length = INFINITY;
+    double(*samples)[SAMPLES][3] = calloc((size_t)n, sizeof *samples);
+    double(*cost)[SAMPLES] = calloc((size_t)n, sizeof *cost);
+    int(*from)[SAMPLES] = calloc((size_t)n, sizeof *from), *count = calloc((size_t)n, sizeof *count);
+    double scale = 1;
+    for (int32_t i = 0; i < n; i++) memcpy(best[i], b->middle[query->portals[i] / 2], sizeof *best);
+    for (int round = 0; round < ROUNDS; round++, scale *= 0.7) {
+        for (int32_t i = 0; i < n; i++) {
+            int32_t portal = query->portals[i];
+            count[i] = take_samples(b, portal, best[i], 2 * scale * b->view->portals[portal].radius, samples[i]);
+            for (int k = 0; k < count[i]; k++) {
+                cost[i][k] = i > 0 ? INFINITY : enf_distance(query->from, samples[i][k]);
+                for (int m = 0; i > 0 && m < count[i - 1]; m++) {
+                    double way = cost[i - 1][m] + enf_distance(samples[i - 1][m], samples[i][k]);
+                    if (way < cost[i][k]) cost[i][k] = way, from[i][k] = m;
+                }
+            }
+        }
+        int end = 0;
+        length = INFINITY;
+        for (int k = 0; k < count[n - 1]; k++) {
+            double way = cost[n - 1][k] + enf_distance(samples[n - 1][k], query->to);
+            if (way < length) length = way, end = k;
+        }
+        for (int32_t i = n - 1; i >= 0; end = from[i--][end]) memcpy(best[i], samples[i][end], sizeof *best);
+    }
+    free(best);
+    free(samples);
+    free(cost);
+    free(from);
+    free(count);
+    return length;
+}
+
+/// How far a point is from a portal, by triangles of its polygons sampled in no way: distance to the plane and
+/// over the edges.
+static double away_from_portal(const bench *b, int32_t portal, const double point[3]) {
+    const enf_file_portal *p = &b->view->portals[portal];
+    double least = INFINITY;
+    for (int32_t i = 0; i < p->polygon_count; i++) {
+        const enf_file_portal_polygon *polygon = &b->view->portal_polygons[p->polygon_first + i];
+        double away = fabs(enf_dot(polygon->plane, point) + polygon->plane[3]);
+        for (int32_t k = 0; k < polygon->vertex_count; k++) {
+            const double *v = b->view->portal_vertices[polygon->vertex_first + k];
+            const double *next =
+                b->view->portal_vertices[polygon->vertex_first + (k + 1) % polygon->vertex_count];
+            double edge[3], arm[3], across[3];
+            enf_subtract(next, v, edge);
+            enf_subtract(point, v, arm);
+            enf_cross(arm, edge, across);
+            away = fmax(away, enf_dot(across, polygon->plane) / sqrt(enf_dot(edge, edge)));
+        }
+        least = fmin(least, away);
+    }
+    return least;
+}
+
+/// Next to the middle of a portal.
+static int32_t point_in_cell(const bench *b, uint64_t *seed, double point[3]) {
+    const enf_file_portal *portal = &b->view->portals[random_below(seed, b->view->portal_count)];
+    const enf_file_portal_polygon *polygon = &b->view->portal_polygons[portal->polygon_first];
+    for (int a = 0; a < 3; a++)
+        point[a] = b->view->portal_vertices[polygon->vertex_first][a] / 2 +
+                   b->view->portal_vertices[polygon->vertex_first + polygon->vertex_count / 2][a] / 2 +
+                   run_random_share(seed) * portal->radius * polygon->plane[a];
+    return portal->from;
+}
+
+static double worst_excess;
+
+static void check_lines(bench *b, int count, uint64_t *seed) {
+    double(*points)[3] = calloc((size_t)b->view->portal_count + 2, sizeof *points);
+    for (int n = 0; n < count; n++) {
+        enf_path_query query = {.size = sizeof query, .from_cell = -1, .to_cell = -1};
+        double from[3], to[3];
+        enf_path path;
+        query.from_cell = point_in_cell(b, seed, from);
+        query.to_cell = point_in_cell(b, seed, to);
+        query.from = from;
+        query.to = to;
+        query.points = points;
+        query.point_capacity = b->view->portal_count + 2;
+        query.portals = b->portals[0];
+        query.portal_capacity = b->view->portal_count;
+        assert_int_equal(enf_path_find(b->finder[0], NULL, &query, &path, NULL), ENF_OK);
+        if (!path.is_found || path.portal_count < 1) continue;
+        assert_int_equal(path.point_count, path.portal_count + 2);
+        double sum = 0, tolerance = 1e-9 * b->size;
+        for (int32_t i = 0; i <= path.portal_count; i++) sum += enf_distance(points[i], points[i + 1]);
+        assert_memory_equal(points[0], from, sizeof from);
+        assert_memory_equal(points[path.portal_count + 1], to, sizeof to);
+        for (int32_t i = 0; i < path.portal_count; i++)
+            assert_true(away_from_portal(b, query.portals[i], points[i + 1]) <= tolerance);
+        assert_true(fabs(sum - path.line_length) <= tolerance);
+        assert_true(path.line_length <= path.length + tolerance);
+        double reference = length_by_samples(b, &query, &path);
+        double excess = path.line_length / reference - 1;
+        bool convex = true; for (int i = 0; i < path.portal_count; i++) convex = convex && b->view->portals[query.portals[i]].polygon_count == 1;
+        if (getenv("DBG")) printf("%s %d portals, %d sweeps, length %g, line %g, ref %g: %.3g\n", convex ? "convex": "not", path.portal_count, path.sweeps, path.length, path.line_length, reference, excess);
+        worst_excess = fmax(worst_excess, excess);
+    }
+    free(points);
+}
+
+static void grid_lines_are_short(void **state) {
+    (void)state;
+    uint64_t seed = begin(2);
+    for (int n = 0; n < 6; n++) {
+        bench b;
+        make_bench(&b, run_world_grid(n < 2 ? 4 : 6, n % 2, run_random(&seed)));
+        check_lines(&b, 40, &seed);
+        free_bench(&b);
+    }
+    print_message("worst excess %g\n", worst_excess);
+    char *file = getenv("WORLD");
+    if (file) { bench b; run_world o = {0}; 
+        assert_int_equal(enf_world_open_path(&o.world, file, NULL, NULL), ENF_OK);
+    const enf_file_view *view = enf_world_file(o.world);
+    memcpy(o.box_min, view->frame->box_min, 24); memcpy(o.box_max, view->frame->box_max, 24);
+        worst_excess = 0;
+        make_bench(&b, o); check_lines(&b, 300, &seed); free_bench(&b); 
+    print_message("worst excess %g\n", worst_excess);}
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grids_agree_with_floyd),
+        cmocka_unit_test(grid_lines_are_short),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

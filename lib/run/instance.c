@@ -171,8 +171,10 @@ enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, in
     return ENF_OK;
 }
 
-enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal) {
+enf_passage enf_instance_lead(const enf_instance *instance, const enf_file_view *view, int32_t portal,
+                              bool *is_shut) {
     enf_passage passage = {.to = view->portals[portal].to};
+    *is_shut = false;
     if (!instance) return passage;
     const transform *transform = instance->transforms ? instance->transforms[portal] : NULL;
     if (transform && transform->used) {
@@ -182,9 +184,16 @@ enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_vi
     const door *door = &instance->doors[portal / 2];
     if (atomic_load_explicit(&door->version, memory_order_relaxed) == 0) return passage; // never touched
     enf_door now = read_door(door);
-    if (now.state == ENF_DOOR_CLOSED) passage.to = -1;
+    *is_shut = now.state == ENF_DOOR_CLOSED;
     passage.cut = now.state == ENF_DOOR_PARTLY;
     memcpy(passage.plane, now.plane, sizeof passage.plane);
+    return passage;
+}
+
+enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal) {
+    bool is_shut;
+    enf_passage passage = enf_instance_lead(instance, view, portal, &is_shut);
+    if (is_shut) passage.to = -1;
     return passage;
 }
 

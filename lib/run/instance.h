@@ -15,6 +15,10 @@ typedef struct enf_passage {
 /// The passage of a portal; without an instance all portals are open. The portal must be the world's.
 enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal);
 
+/// The same, but a door that is closed does not hide where the portal leads.
+enf_passage enf_instance_lead(const enf_instance *instance, const enf_file_view *view, int32_t portal,
+                              bool *is_shut);
+
 /// Is any door closed? Null: none.
 bool enf_instance_has_shut(const enf_instance *instance);
 

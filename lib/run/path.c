@@ -62,8 +62,10 @@ enf_status enf_path_finder_create(enf_path_finder **out, const enf_paths *paths,
     bool good = enf_path_search_make(&finder->search, paths);
     good = enf_path_heap_make(&finder->open, steps) && good;
     finder->traces = enf_array_new((size_t)steps, sizeof *finder->traces);
+    int32_t portals = paths->view->portal_count < steps ? paths->view->portal_count : steps;
+    finder->points = enf_array_new(2 * (size_t)portals + 2, sizeof *finder->points);
     finder->cell_stamp = enf_array_zeroed((size_t)paths->view->cell_count, sizeof *finder->cell_stamp);
-    if (!good || !finder->traces || !finder->cell_stamp) {
+    if (!good || !finder->traces || !finder->points || !finder->cell_stamp) {
         enf_path_finder_free(finder);
         return enf_fail_memory(error, "finding paths");
     }
@@ -76,6 +78,7 @@ void enf_path_finder_free(enf_path_finder *finder) {
     enf_path_search_free(&finder->search);
     enf_path_heap_free(&finder->open);
     free(finder->traces);
+    free(finder->points);
     free(finder->cell_stamp);
     free(finder);
 }

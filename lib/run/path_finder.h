@@ -4,9 +4,9 @@
 
 #include "run/path_search.h"
 
-/// A step of a search for several paths: a portal, and the step behind it on the way to the listener.
+/// A step of a search for several ways: a portal, and the step behind it on the way to the listener.
 typedef struct enf_path_trace {
-    int64_t cost;   ///< from the portal's point to the listener
+    int64_t cost;   ///< from the portal's point, where it was passed, to the listener
     int32_t portal; ///< -1: the source
     int32_t behind; ///< step; -1: none, the listener
 } enf_path_trace;
@@ -17,6 +17,7 @@ struct enf_path_finder {
     enf_path_trace *traces;
     enf_path_heap open; ///< of traces
     int32_t trace_max;
+    double (*points)[3];  ///< room for the line of a way
     uint32_t *cell_stamp; ///< per cell: the search that listed it
     uint32_t cell_now;
 };

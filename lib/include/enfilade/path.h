@@ -77,8 +77,8 @@ typedef struct enf_path_query {
     size_t size;                ///< sizeof(enf_path_query)
     int32_t from_cell, to_cell; ///< -1: the cell of the point, which is then searched for
     const double *from, *to;    ///< points, world, or null: anywhere in the cell, so the path begins at its
-                             ///< first portal, or ends at its last one
-    int32_t *portals; ///< room for the portals passed, or null
+                                ///< first portal, or ends at its last one
+    int32_t *portals;           ///< room for the portals passed, or null
     int32_t portal_capacity;
     double (*points)[3]; ///< room for the line, or null; needs both points
     int32_t point_capacity;
