@@ -10,8 +10,10 @@
 
 #include <string.h>
 
-enum { SMOOTH_SWEEPS = 24 };
-#define SHRINKING 0.7 // of s, per sweep
+enum { SMOOTH_SWEEPS = 12, KNOT_MAX = 16, KNOT_SWEEPS = 8 };
+#define SHRINKING 0.6      // of s, per sweep
+#define KNOT_SIZE 0.05     // of the mean step
+#define LEAST_GAIN 0x1p-40 // of a length, or moving a knot is rounding
 
 /// The matrix of a portal, or null.
 static const double *matrix_of(const enf_path_line *line, int32_t portal) {
@@ -109,16 +111,85 @@ static void begin(const enf_path_line *line, const double from[3], const double 
     memcpy(line->points[at], to, sizeof *line->points);
 }
 
+// ---------------------------------------------------------------------------------------------- knots
+
+/// Points of the line next to each other in the same place: `first` is a point's number, `portal` that of its
+/// portal in the line's list.
+typedef struct knot {
+    int32_t first, portal, count;
+} knot;
+
+static double length_of(double (*points)[3], int32_t steps) {
+    double length = 0;
+    for (int32_t i = 0; i < steps; i++) length += enf_distance(points[i], points[i + 1]);
+    return length;
+}
+
+/// Moves all points of a knot next to a point, if that makes the line shorter.
+static bool move_knot(const enf_path_line *line, const knot *k, const double to[3]) {
+    double(*points)[3] = line->points + k->first, kept[KNOT_MAX][3];
+    double length = length_of(points - 1, k->count + 1);
+    for (int32_t i = 0; i < k->count; i++) memcpy(kept[i], points[i], sizeof *kept);
+    bool good = true;
+    for (int32_t i = 0; i < k->count; i++)
+        good = good && enf_portal_nearest(line->paths->view, line->portals[k->portal + i], to, points[i]);
+    good = good && length_of(points - 1, k->count + 1) < length * (1 - LEAST_GAIN);
+    for (int32_t i = 0; !good && i < k->count; i++) memcpy(points[i], kept[i], sizeof *kept);
+    return good;
+}
+
+/// Tries the best point of every edge that a knot lies on.
+static bool loosen_knot(const enf_path_line *line, const knot *k, double near) {
+    const double *before = line->points[k->first - 1], *behind = line->points[k->first + k->count];
+    bool moved = false;
+    for (int32_t i = 0; i < k->count; i++) {
+        const double *from, *to;
+        for (int32_t e = 0; enf_portal_edge(line->paths->view, line->portals[k->portal + i], e, &from, &to);
+             e++) {
+            const double *at = line->points[k->first + i];
+            double best[3], foot[3];
+            enf_edge_between(from, to, at, at, foot);
+            if (!(enf_distance(at, foot) <= near)) continue;
+            enf_edge_between(from, to, before, behind, best);
+            moved = move_knot(line, k, best) || moved;
+        }
+    }
+    return moved;
+}
+
+/// Loosens all knots: rows of points each of which is near the one before.
+static bool loosen_knots(const enf_path_line *line, double near) {
+    knot k = {.first = 1, .portal = 0, .count = 1};
+    bool moved = false;
+    while (k.portal < line->portal_count) {
+        bool jumps = matrix_of(line, line->portals[k.portal]) != NULL;
+        for (k.count = 1; !jumps && k.count < KNOT_MAX && k.portal + k.count < line->portal_count;
+             k.count++) {
+            const double(*at)[3] = (const double(*)[3])line->points + k.first + k.count;
+            if (!(enf_distance(at[-1], at[0]) <= near) || matrix_of(line, line->portals[k.portal + k.count]))
+                break;
+        }
+        if (k.count > 1) moved = loosen_knot(line, &k, near) || moved;
+        k.first += k.count + jumps;
+        k.portal += k.count;
+    }
+    return moved;
+}
+
 int32_t enf_path_line_pull(const enf_path_line *line, const double from[3], const double to[3]) {
     begin(line, from, to);
     int32_t size = enf_path_line_size(line), sweeps = 0;
     double length = enf_path_line_length(line), smooth = length / (line->portal_count + 1);
+    const double near = KNOT_SIZE * smooth;
     if (line->portal_count == 0) return 0;
     for (int32_t n = 0; line->portal_count > 1 && n < SMOOTH_SWEEPS && sweeps < line->sweeps_max; n++) {
         sweep(line, size, sweeps++ % 2, smooth);
         smooth *= SHRINKING;
     }
-    while (sweeps < line->sweeps_max)
-        if (!(sweep(line, size, sweeps++ % 2, 0) > line->tolerance * length)) break;
+    while (sweeps < line->sweeps_max) {
+        bool still = !(sweep(line, size, sweeps++ % 2, 0) > line->tolerance * length);
+        bool loosened = (still || sweeps % KNOT_SWEEPS == 0) && loosen_knots(line, near);
+        if (still && !loosened) break;
+    }
     return sweeps;
 }

@@ -72,10 +72,9 @@ static double way_by(const double a[3], const double b[3], const double by[3]) {
     return enf_distance(a, by) + enf_distance(by, b);
 }
 
-/// The point of an edge with the shortest way: the triangles that a and b span with the edge's line, unfolded
-/// into one plane.
-static void between_on_edge(const double from[3], const double to[3], const double a[3], const double b[3],
-                            champion *best) {
+/// The triangles that a and b span with the edge's line, unfolded into one plane.
+void enf_edge_between(const double from[3], const double to[3], const double a[3], const double b[3],
+                      double best[3]) {
     double edge[3], arms[2][3], share[2], away[2], point[3];
     enf_subtract(to, from, edge);
     double square = enf_dot(edge, edge);
@@ -87,8 +86,23 @@ static void between_on_edge(const double from[3], const double to[3], const doub
     }
     double sum = away[0] + away[1];
     double at = sum > 0 ? (share[0] * away[1] + share[1] * away[0]) / sum : share[0];
-    enf_between(from, to, clamp_share(at), point);
-    challenge(best, way_by(a, b, point), point);
+    enf_between(from, to, clamp_share(at), best);
+}
+
+bool enf_portal_edge(const enf_file_view *view, int32_t portal, int32_t number, const double **from,
+                     const double **to) {
+    const enf_file_portal *p = &view->portals[portal];
+    for (int32_t i = 0; i < p->polygon_count; i++) {
+        const enf_file_portal_polygon *polygon = &view->portal_polygons[p->polygon_first + i];
+        const double(*corner)[3] = view->portal_vertices + polygon->vertex_first;
+        if (number < polygon->vertex_count) {
+            *from = corner[number];
+            *to = corner[(number + 1) % polygon->vertex_count];
+            return true;
+        }
+        number -= polygon->vertex_count;
+    }
+    return false;
 }
 
 /// Where the straight way meets the plane, if that is inside; if both ends lie on one side, one of them is
@@ -104,8 +118,10 @@ static void between_of_polygon(const enf_file_view *view, const enf_file_portal_
         return;
     }
     const double(*corner)[3] = view->portal_vertices + polygon->vertex_first;
-    for (int32_t i = 0, before = polygon->vertex_count - 1; i < polygon->vertex_count; before = i++)
-        between_on_edge(corner[before], corner[i], a, b, best);
+    for (int32_t i = 0, before = polygon->vertex_count - 1; i < polygon->vertex_count; before = i++) {
+        enf_edge_between(corner[before], corner[i], a, b, point);
+        challenge(best, way_by(a, b, point), point);
+    }
 }
 
 bool enf_portal_between(const enf_file_view *view, int32_t portal, const double a[3], const double b[3],
