@@ -26,6 +26,10 @@ typedef struct hearing {
     enf_sound sound;
 } hearing;
 
+static double clamp_factor(double factor) {
+    return factor > 0 ? fmin(factor, 1) : 0; // 0 for what is no number
+}
+
 /// What a portal leaves of a sound, from 0 to 1.
 static double factor_of(const hearing *h, int32_t portal, bool is_shut) {
     const enf_sound_query *query = h->query;
@@ -34,8 +38,7 @@ static double factor_of(const hearing *h, int32_t portal, bool is_shut) {
         factor = query->factors[portal / 2];
     else if (query->factor)
         factor = query->factor(query->user, portal);
-    if (is_shut) factor *= query->door_factor;
-    return factor > 0 ? fmin(factor, 1) : 0;
+    return clamp_factor(factor) * (is_shut ? clamp_factor(query->door_factor) : 1);
 }
 
 /// What passing a portal costs; ENF_PATH_NEVER: nothing passes.

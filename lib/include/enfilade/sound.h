@@ -37,7 +37,7 @@ typedef struct enf_sound_query {
     const double *factors; ///< per pair of portals (portal / 2), or null
     enf_sound_factor *factor; ///< asked if there are no `factors`; null: 1
     void *user;               ///< for `factor`
-    double door_factor;       ///< a closed door multiplies by this; 0: nothing passes
+    double door_factor;       ///< a closed door multiplies by this, too; 0: nothing passes
     int32_t *portals;         ///< room for the portals of all ways, or null
     int32_t portal_capacity;
 } enf_sound_query;
