@@ -16,4 +16,7 @@ int cli_bench_run_sight(int argc, char **argv);
 /// View traversal: time against error; or, with --check, against rays.
 int cli_bench_run_view(int argc, char **argv);
 
+/// Paths, lines, cells near a point, and ways of sound.
+int cli_bench_run_paths(int argc, char **argv);
+
 #endif
