@@ -20,8 +20,10 @@
 // cell that surrounds others, or that a ray enters twice, is listed once, where it begins. (With
 // ENF_VIEW_GROWN, regions that were added late do not change a cell's place.)
 //
-// Time: each cell is looked at a bounded number of times, so a run takes at most some constant times the
-// portals of the cells that are listed, whatever the geometry. Every buffer is taken by create.
+// Time: each cell is looked at for each of its first `regions_max` regions, and a few times more, when later
+// ones join them and in the end it gets the whole screen. So a run looks at the portals of what it lists a
+// bounded number of times, whatever the geometry, and at nothing else in the world. Nothing is allocated:
+// create takes all memory.
 //
 // A view belongs to one thread at a time; any number of views may share a world and an instance.
 #ifndef ENFILADE_VIEW_H
