@@ -42,7 +42,11 @@ static void make_bench(bench *b, run_world opened) {
     *b = (bench){.opened = opened, .view = enf_world_file(opened.world)};
     assert_int_equal(enf_instance_create(&b->instance, opened.world, NULL, NULL), ENF_OK);
     for (int k = 0; k < KINDS; k++) {
-        enf_paths_options options = {sizeof options, (uint64_t)1 << 30, k & 1, k & 2};
+        enf_paths_options options = {.size = sizeof options, .table_bytes_max = (uint64_t)1 << 30};
+        options.skip_table = k & 1;
+        options.skip_contraction = k & 2;
+        options.landmarks = k;
+        options.skip_landmarks = k == 3;
         assert_int_equal(enf_paths_create(&b->paths[k], opened.world, &options, NULL), ENF_OK);
         assert_int_equal(enf_path_finder_create(&b->finder[k], b->paths[k], NULL, NULL), ENF_OK);
         b->portals[k] = calloc((size_t)b->view->portal_count + 1, sizeof(int32_t));

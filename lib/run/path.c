@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SWEEPS = 200, SOUND_STEPS = 4096, SOUND_STEPS_MOST = 1 << 28 };
+enum { SWEEPS = 200, LANDMARKS = 4, SOUND_STEPS = 4096, SOUND_STEPS_MOST = 1 << 28 };
 #define TABLE_BYTES (UINT64_C(4) << 20)
 #define TOLERANCE 1e-5
 
@@ -19,10 +19,17 @@ enf_status enf_paths_create(enf_paths **out, const enf_world *world, const enf_p
     enf_paths_options chosen = options ? *options : (enf_paths_options){0};
     enf_paths *paths = calloc(1, sizeof *paths);
     if (!paths) return enf_fail_memory(error, "paths");
+    if (chosen.landmarks < 0 || chosen.landmarks > ENF_PATH_LANDMARKS_MAX) {
+        free(paths);
+        return enf_fail(error, ENF_BAD_USAGE, "%ld landmarks: 1 to %d are possible", (long)chosen.landmarks,
+                        ENF_PATH_LANDMARKS_MAX);
+    }
     paths->world = world;
     paths->view = enf_world_file(world);
     bool good = enf_path_graph_make(paths, !chosen.skip_contraction);
     uint64_t most = chosen.table_bytes_max ? chosen.table_bytes_max : TABLE_BYTES;
+    int32_t landmarks = chosen.skip_landmarks ? 0 : chosen.landmarks ? chosen.landmarks : LANDMARKS;
+    good = good && enf_path_landmarks_make(paths, landmarks);
     if (good && !chosen.skip_table && enf_path_table_size(paths) <= most) good = enf_path_table_make(paths);
     if (!good) {
         enf_paths_free(paths);
@@ -177,7 +184,9 @@ static bool find_route(enf_path_finder *finder, const enf_instance *instance, co
     const int32_t *transforms;
     int64_t length = ENF_PATH_NEVER;
     path->portal_count = -1;
-    if (paths->table && enf_instance_transforms(instance, &transforms) == 0) {
+    bool plain = enf_instance_transforms(instance, &transforms) == 0;
+    if (plain && paths->component[start->cell] != paths->component[goal->cell]) return false;
+    if (paths->table && plain) {
         length = length_by_table(paths, start, goal, &path->first);
         if (length == ENF_PATH_NEVER) return false;
         if (wants_portals || enf_instance_has_shut(instance))

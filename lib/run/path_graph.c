@@ -172,4 +172,6 @@ void enf_path_graph_free(enf_paths *paths) {
     free(paths->gate);
     free(paths->gate_pair);
     free(paths->table);
+    free(paths->component);
+    free(paths->landmarks);
 }

@@ -26,6 +26,9 @@ struct enf_paths {
     int32_t gate_count;
     int32_t *gate_pair; ///< per gate
     int64_t *table;     ///< null, or lengths between gates i >= j at i * (i + 1) / 2 + j
+    int32_t *component; ///< per cell: the lowest cell that portals connect it with
+    int32_t landmark_count;
+    int64_t *landmarks; ///< per gate: lengths from all landmarks
 };
 
 /// The point of a portal, in units.

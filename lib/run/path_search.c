@@ -65,7 +65,8 @@ typedef struct run {
     const enf_path_goal *start, *goal; ///< in the direction of the search
     bool contracts, backward, asks_doors;
     double box[2][3]; ///< of the goal's point, or the portals that lead there; units
-    int64_t best;     ///< of whole paths
+    enf_path_ranges ranges;
+    int64_t best; ///< of whole paths
     int32_t best_last, best_begin, best_via;
 } run;
 
@@ -75,7 +76,9 @@ static int64_t bound(const run *r, int32_t portal) {
     const double *place = enf_path_place(r->paths, portal);
     double nearest[3];
     for (int a = 0; a < 3; a++) nearest[a] = fmin(fmax(place[a], r->box[0][a]), r->box[1][a]);
-    return enf_path_straight(r->paths, place, nearest);
+    int64_t straight = enf_path_straight(r->paths, place, nearest);
+    int64_t other = enf_path_landmarks_bound(r->paths, r->paths->gate[portal / 2], &r->ranges);
+    return straight > other ? straight : other;
 }
 
 static bool is_open(const run *r, int32_t portal) {
@@ -197,7 +200,8 @@ static int32_t write_chain(const run *r, int32_t last, int32_t begin, int32_t co
 /// Writes the best path from its end to its start.
 static int32_t write_route(const run *r) {
     int32_t begin = r->best_begin, count = write_chain(r, r->best_last, begin, 0);
-    for (int32_t via = r->best_via; via != FROM_START;) {
+    int32_t via = r->best_via == FROM_START ? FROM_START : r->search->via[begin]; // a tie may have come later
+    while (via != FROM_START) {
         begin = via < FROM_START ? -2 - via : via;
         count = write_chain(r, tail_of(r, begin), begin, count);
         via = via < FROM_START ? FROM_START : r->search->via[begin];
@@ -229,6 +233,7 @@ int32_t enf_path_search_run(enf_path_search *search, const enf_instance *instanc
              .best_last = -1};
     enf_path_search_begin(search);
     set_box(&r);
+    enf_path_landmarks_look(r.paths, r.goal, &r.ranges);
     leave_start(&r);
     while (search->heap.count > 0 && search->heap.entries[0].key <= r.best) {
         int32_t portal = enf_path_heap_pop(&search->heap).node;

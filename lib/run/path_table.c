@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One search per gate: E. W. Dijkstra, "A note on two problems in connexion with graphs", Numerische
-// Mathematik 1 (1959). Gates have no direction here: a path that goes to a gate's point and back into the
-// same cell is always longer than the straight step (see path_graph.h).
 #include "run/path_table.h"
 
-#include "base/array.h"
-#include "run/path_heap.h"
+#include "run/path_spread.h"
 
 #include <stdlib.h>
 
@@ -19,65 +15,17 @@ static int64_t *entry(const enf_paths *paths, int32_t a, int32_t b) {
     return &paths->table[high * (high + 1) / 2 + low];
 }
 
-typedef struct spreading {
-    const enf_paths *paths;
-    enf_path_heap heap;
-    int64_t *cost; ///< per gate
-    int8_t *state; ///< per gate: 0 not seen, 1 in the heap, 2 done
-} spreading;
-
-static void reach(spreading *s, int32_t portal, int64_t cost) {
-    int32_t gate = s->paths->gate[portal / 2];
-    if (s->state[gate] == 2 || (s->state[gate] == 1 && s->cost[gate] <= cost)) return;
-    if (s->state[gate] == 0)
-        enf_path_heap_add(&s->heap, gate, cost);
-    else
-        enf_path_heap_sink(&s->heap, gate, cost);
-    s->state[gate] = 1;
-    s->cost[gate] = cost;
-}
-
-/// From a portal's point through the cell it leads out of, if that is a junction, and along its chain.
-static void spread(spreading *s, int32_t portal, int64_t cost) {
-    const enf_paths *paths = s->paths;
-    int32_t cell = paths->view->portals[portal].from, count;
-    if (!paths->is_junction[cell]) return;
-    const int32_t *exits = enf_path_exits(paths, cell, &count);
-    for (int32_t i = 0; i < count; i++)
-        if (exits[i] / 2 != portal / 2)
-            reach(s, exits[i],
-                  cost +
-                      enf_path_step(paths, enf_path_place(paths, portal), enf_path_place(paths, exits[i])));
-    int32_t tail = paths->tail[portal];
-    if (tail != portal) reach(s, tail, cost + paths->offset[tail]);
-}
-
-static void search_from(spreading *s, int32_t start) {
-    const enf_paths *paths = s->paths;
-    for (int32_t i = 0; i < paths->gate_count; i++) s->state[i] = 0;
-    reach(s, 2 * paths->gate_pair[start], 0);
-    while (s->heap.count > 0) {
-        enf_path_heap_entry first = enf_path_heap_pop(&s->heap);
-        s->state[first.node] = 2;
-        for (int k = 0; k < 2; k++) spread(s, 2 * paths->gate_pair[first.node] + k, first.key);
-    }
-    for (int32_t i = 0; i <= start; i++) *entry(paths, start, i) = s->state[i] ? s->cost[i] : ENF_PATH_NEVER;
-}
-
 bool enf_path_table_make(enf_paths *paths) {
     uint64_t size = enf_path_table_size(paths);
     if (size > PTRDIFF_MAX) return false;
-    size_t gates = (size_t)paths->gate_count;
-    spreading s = {.paths = paths};
-    bool good = enf_path_heap_make(&s.heap, paths->gate_count);
+    enf_path_spread spread;
     paths->table = malloc((size_t)size + 1);
-    s.cost = enf_array_new(gates, sizeof *s.cost);
-    s.state = enf_array_new(gates, sizeof *s.state);
-    good = good && paths->table && s.cost && s.state;
-    for (int32_t i = 0; good && i < paths->gate_count; i++) search_from(&s, i);
-    enf_path_heap_free(&s.heap);
-    free(s.cost);
-    free(s.state);
+    bool good = enf_path_spread_make(&spread, paths) && paths->table;
+    for (int32_t i = 0; good && i < paths->gate_count; i++) {
+        enf_path_spread_run(&spread, i);
+        for (int32_t k = 0; k <= i; k++) *entry(paths, i, k) = spread.cost[k];
+    }
+    enf_path_spread_free(&spread);
     return good;
 }
 

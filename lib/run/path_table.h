@@ -3,25 +3,13 @@
 #ifndef ENF_RUN_PATH_TABLE_H
 #define ENF_RUN_PATH_TABLE_H
 
-#include "run/path_graph.h"
+#include "run/path_landmarks.h"
 
 /// The bytes of a table.
 uint64_t enf_path_table_size(const enf_paths *paths);
 
 /// Fills the table. False without memory.
 bool enf_path_table_make(enf_paths *paths);
-
-/// The end of a path.
-typedef struct enf_path_goal {
-    int32_t cell;
-    bool has_point;
-    double point[3]; ///< units
-} enf_path_goal;
-
-/// From the point of a portal that leads into the goal's cell to its end.
-static inline int64_t enf_path_last_step(const enf_paths *paths, int32_t portal, const enf_path_goal *goal) {
-    return goal->has_point ? enf_path_step(paths, enf_path_place(paths, portal), goal->point) : 0;
-}
 
 /// The length from the point of a portal, passed, to a goal; ENF_PATH_NEVER: no way.
 int64_t enf_path_table_rest(const enf_paths *paths, int32_t portal, const enf_path_goal *goal);

@@ -9,8 +9,8 @@
 //
 // Cells with exactly two portals are no places to decide: they are contracted into chains (the thesis, 3.3.6;
 // it did so by hand for a game). If a table of lengths between all remaining portals fits into the memory
-// allowed, answers come from it; otherwise, and when a door on the path is closed, from a search (A*, see
-// lib/run/path_search.c).
+// allowed, answers come from it; otherwise, and when a door on the path is closed, from a search (A*, guided
+// by straight lengths and landmarks).
 //
 // Doors that are closed are not passed; those partly open are, as if they were open. Portals that transform
 // cost nothing and lead on in their target cell; as long as an instance has any, paths are searched portal by
@@ -36,6 +36,8 @@ typedef struct enf_paths_options {
     size_t size;              ///< sizeof(enf_paths_options)
     uint64_t table_bytes_max; ///< no larger table is made; 0: 4 MiB (about 1000 portals next to junctions)
     bool skip_table;          ///< always search
+    int32_t landmarks;        ///< that searches are guided by, at most 16; 0: 4
+    bool skip_landmarks;      ///< searches are guided by straight lengths alone
     bool skip_contraction;    ///< every cell counts as a junction
 } enf_paths_options;
 
