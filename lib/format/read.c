@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Header, section table and checksums; validate.c looks at what the sections say.
+// Header, section table and checksums; validate.c looks at what the sections say. Counts come from the table,
+// so a part can be checked before the parts that it points into have been.
 #include "format/read.h"
 
 #include "base/hash.h"
@@ -70,17 +71,12 @@ static enf_status section_fails(enf_error *error, const enf_section_spec *spec, 
 
 /// Places a known section in the view. `counted` tells which dimensions have their count already.
 static enf_status place_section(enf_file_view *view, const enf_file_section *section,
-                                const enf_section_spec *spec, bool *counted, bool skip_checksums,
-                                enf_error *error) {
+                                const enf_section_spec *spec, bool *counted, enf_error *error) {
     if (enf_view_array(view, spec)) return section_fails(error, spec, "is there twice");
     if (section->element_size != spec->element_size || section->count > section->size ||
         section->count * section->element_size != section->size)
         return section_fails(error, spec, "has a wrong size");
     if (section->count < spec->extra) return section_fails(error, spec, "is empty");
-    const uint8_t *bytes = view->bytes + section->offset;
-    if (!skip_checksums && enf_hash64(bytes, (size_t)section->size, 0) != section->checksum)
-        return section_fails(error, spec, "is damaged (wrong checksum)");
-
     uint64_t count = section->count - spec->extra;
     if (counted[spec->dimension]) {
         if ((uint64_t)enf_view_count(view, spec->dimension) != count)
@@ -89,11 +85,11 @@ static enf_status place_section(enf_file_view *view, const enf_file_section *sec
         return section_fails(error, spec, "has a count that is out of range");
     }
     counted[spec->dimension] = true;
-    enf_view_set_array(view, spec, bytes);
+    enf_view_set_array(view, spec, view->bytes + section->offset);
     return ENF_OK;
 }
 
-static enf_status place_sections(enf_file_view *view, bool skip_checksums, enf_error *error) {
+static enf_status place_sections(enf_file_view *view, enf_error *error) {
     bool counted[ENF_DIMENSION_COUNT] = {false};
     uint64_t end =
         view->header->table_offset + (uint64_t)view->header->section_count * sizeof *view->sections;
@@ -109,13 +105,13 @@ static enf_status place_sections(enf_file_view *view, bool skip_checksums, enf_e
             return enf_fail(error, ENF_BAD_INPUT,
                             "the file needs something that this program does not know; use a newer program");
         if (!spec) continue;
-        enf_status status = place_section(view, section, spec, counted, skip_checksums, error);
+        enf_status status = place_section(view, section, spec, counted, error);
         if (status) return status;
     }
     return ENF_OK;
 }
 
-/// A part is there as a whole, or not at all; the core must be there.
+/// A part is there as a whole, or not at all; the first ones must be there.
 static enf_status check_parts(enf_file_view *view, enf_error *error) {
     int wanted[PARTS] = {0}, found[PARTS] = {0};
     const enf_section_spec *missing[PARTS] = {NULL};
@@ -128,7 +124,7 @@ static enf_status check_parts(enf_file_view *view, enf_error *error) {
             missing[spec->part] = spec;
     }
     for (int part = ENF_PART_CORE; part < ENF_PART_OPTIONAL; part++) {
-        bool may_be_absent = part != ENF_PART_CORE;
+        bool may_be_absent = part > ENF_PART_LOCATION;
         if (found[part] < wanted[part] && !(may_be_absent && found[part] == 0))
             return section_fails(error, missing[part], "is missing");
     }
@@ -144,8 +140,7 @@ static bool is_little_endian(void) {
     return first == 1;
 }
 
-enf_status enf_file_read(enf_file_view *view, const void *bytes, size_t size, bool skip_checksums,
-                         enf_error *error) {
+enf_status enf_file_place(enf_file_view *view, const void *bytes, size_t size, enf_error *error) {
     memset(view, 0, sizeof *view);
     if (!is_little_endian())
         return enf_fail(error, ENF_BAD_USAGE,
@@ -156,8 +151,62 @@ enf_status enf_file_read(enf_file_view *view, const void *bytes, size_t size, bo
     view->size = size;
     view->header = bytes;
     view->sections = (const void *)(view->bytes + view->header->table_offset);
-    status = place_sections(view, skip_checksums, error);
-    if (!status) status = check_parts(view, error);
-    if (!status) status = enf_view_check(view, error);
+    status = place_sections(view, error);
+    return status ? status : check_parts(view, error);
+}
+
+static enf_status check_checksums(const enf_file_view *view, enf_loaded load, enf_error *error) {
+    for (uint32_t i = 0; i < view->header->section_count; i++) {
+        const enf_file_section *section = &view->sections[i];
+        const enf_section_spec *spec = find_spec(section->tag);
+        if (!spec || enf_section_load(spec) != load) continue;
+        if (enf_hash64(view->bytes + section->offset, (size_t)section->size, 0) != section->checksum)
+            return section_fails(error, spec, "is damaged (wrong checksum)");
+    }
+    return ENF_OK;
+}
+
+static bool is_wanted(enf_loaded load, uint32_t loads) {
+    return load == ENF_LOADED_ALWAYS || loads >> (load - 1) & 1;
+}
+
+enf_status enf_file_check(const enf_file_view *view, uint32_t loads, bool skip_checksums, enf_error *error) {
+    enf_status status = ENF_OK;
+    for (int i = 0; i < ENF_LOADS && !status; i++) {
+        enf_loaded load = (enf_loaded)i;
+        if (!is_wanted(load, loads)) continue;
+        if (!skip_checksums) status = check_checksums(view, load, error);
+        if (!status) status = enf_view_check_load(view, load, error);
+    }
     return status;
+}
+
+enf_status enf_file_read(enf_file_view *view, const void *bytes, size_t size, bool skip_checksums,
+                         enf_error *error) {
+    enf_status status = enf_file_place(view, bytes, size, error);
+    return status ? status : enf_file_check(view, ENF_LOAD_ALL, skip_checksums, error);
+}
+
+uint32_t enf_load_with_needs(uint32_t loads) {
+    if (loads & ENF_LOAD_EXACT) loads |= ENF_LOAD_DRAW | ENF_LOAD_LOCATION;
+    if (loads & ENF_LOAD_SIGHT) loads |= ENF_LOAD_LOCATION;
+    return loads ? loads | ENF_LOAD_CELLS : 0;
+}
+
+void enf_file_show(enf_file_view *shown, const enf_file_view *view, uint32_t loads) {
+    *shown = *view;
+    for (int i = 0; i < enf_section_spec_count; i++) {
+        const enf_section_spec *spec = &enf_section_specs[i];
+        if (is_wanted(enf_section_load(spec), loads)) continue;
+        enf_view_set_array(shown, spec, NULL);
+        enf_view_set_count(shown, spec->dimension, spec->dimension == ENF_DIMENSION_NONE);
+    }
+    // An array of offsets is counted by what it divides, which may belong to another part.
+    for (int i = 0; i < enf_section_spec_count; i++) {
+        const enf_section_spec *spec = &enf_section_specs[i];
+        if (is_wanted(enf_section_load(spec), loads))
+            enf_view_set_count(shown, spec->dimension, (uint64_t)enf_view_count(view, spec->dimension));
+    }
+    shown->has_exact = view->has_exact && is_wanted(ENF_LOADED_EXACT, loads);
+    shown->has_geometry = view->has_geometry && is_wanted(ENF_LOADED_DRAW, loads);
 }

@@ -20,24 +20,24 @@ const enf_section_spec enf_section_specs[] = {
     SECTION("SPAWN",    CORE,     SPAWNS,             0, NONE,      NONE,          0, spawns),
     SECTION("LEAK",     OPTIONAL, LEAK_POINTS,        0, FINITE,    NONE,          0, leak_points),
 
-    SECTION("CELL",     CORE,     CELLS,              0, NONE,      NONE,          0, cells),
-    SECTION("PORTAL",   CORE,     PORTALS,            0, NONE,      NONE,          0, portals),
-    SECTION("PORTPOLY", CORE,     PORTAL_POLYGONS,    0, NONE,      NONE,          0, portal_polygons),
-    SECTION("PORTVERT", CORE,     PORTAL_VERTICES,    0, FINITE,    NONE,          0, portal_vertices),
-    SECTION("CELLPORT", CORE,     CELL_PORTALS,       0, INDEX,     PORTALS,       0, cell_portals),
+    SECTION("CELL",     CELLS,    CELLS,              0, NONE,      NONE,          0, cells),
+    SECTION("PORTAL",   CELLS,    PORTALS,            0, NONE,      NONE,          0, portals),
+    SECTION("PORTPOLY", CELLS,    PORTAL_POLYGONS,    0, NONE,      NONE,          0, portal_polygons),
+    SECTION("PORTVERT", CELLS,    PORTAL_VERTICES,    0, FINITE,    NONE,          0, portal_vertices),
+    SECTION("CELLPORT", CELLS,    CELL_PORTALS,       0, INDEX,     PORTALS,       0, cell_portals),
 
-    SECTION("BOX",      CORE,     BOXES,              0, NONE,      NONE,          0, boxes),
+    SECTION("BOX",      LOCATION, BOXES,              0, NONE,      NONE,          0, boxes),
     SECTION("BRICKS",   START,    NONE,               0, NONE,      NONE,          0, start),
     SECTION("BRICKTET", START,    STARTS,             0, INDEX,     TETRAHEDRA,   -1, start_tetrahedra),
-    SECTION("POINT",    CORE,     POINTS,             0, GRID,      NONE,          0, points),
-    SECTION("PLANE",    CORE,     PLANES,             0, NONE,      NONE,          0, planes),
-    SECTION("TET",      CORE,     TETRAHEDRA,         0, INDEX,     POINTS,        0, tetrahedra),
-    SECTION("TETROOT",  CORE,     TETRAHEDRA,         0, NONE,      NONE,          0, tetrahedron_root),
-    SECTION("TETNEXT",  CORE,     TETRAHEDRA,         0, INDEX,     TETRAHEDRA,   -1, tetrahedron_next),
-    SECTION("NODPLANE", CORE,     NODES,              0, INDEX,     PLANES,        0, node_plane),
-    SECTION("NODCHILD", CORE,     NODES,              0, NONE,      NONE,          0, node_child),
-    SECTION("FINEREG",  CORE,     FINE,               0, INDEX,     REGIONS,       0, fine_region),
-    SECTION("FINECELL", CORE,     FINE,               0, INDEX,     CELLS,        -1, fine_cell),
+    SECTION("POINT",    LOCATION, POINTS,             0, GRID,      NONE,          0, points),
+    SECTION("PLANE",    LOCATION, PLANES,             0, NONE,      NONE,          0, planes),
+    SECTION("TET",      LOCATION, TETRAHEDRA,         0, INDEX,     POINTS,        0, tetrahedra),
+    SECTION("TETROOT",  LOCATION, TETRAHEDRA,         0, NONE,      NONE,          0, tetrahedron_root),
+    SECTION("TETNEXT",  LOCATION, TETRAHEDRA,         0, INDEX,     TETRAHEDRA,   -1, tetrahedron_next),
+    SECTION("NODPLANE", LOCATION, NODES,              0, INDEX,     PLANES,        0, node_plane),
+    SECTION("NODCHILD", LOCATION, NODES,              0, NONE,      NONE,          0, node_child),
+    SECTION("FINEREG",  LOCATION, FINE,               0, INDEX,     REGIONS,       0, fine_region),
+    SECTION("FINECELL", LOCATION, FINE,               0, INDEX,     CELLS,        -1, fine_cell),
 
     SECTION("RPOINT",   GEOMETRY, RENDER_POINTS,      0, FINITE,    NONE,          0, render_points),
     SECTION("RNORMAL",  GEOMETRY, RENDER_NORMALS,     0, FINITE,    NONE,          0, render_normals),
@@ -138,6 +138,17 @@ static const struct {
     [ENF_DIMENSION_WALL_NODES] = COUNT(wall_node_count),
     [ENF_DIMENSION_PORTAL_NODES] = COUNT(portal_node_count),
 };
+
+enf_loaded enf_section_load(const enf_section_spec *spec) {
+    static const uint8_t loads[] = {
+        [ENF_PART_CORE] = ENF_LOADED_ALWAYS,       [ENF_PART_CELLS] = ENF_LOADED_CELLS,
+        [ENF_PART_LOCATION] = ENF_LOADED_LOCATION, [ENF_PART_EXACT] = ENF_LOADED_EXACT,
+        [ENF_PART_GEOMETRY] = ENF_LOADED_DRAW,     [ENF_PART_PVS] = ENF_LOADED_SEEN,
+        [ENF_PART_SIGHT] = ENF_LOADED_SIGHT,       [ENF_PART_START] = ENF_LOADED_LOCATION,
+        [ENF_PART_OPTIONAL] = ENF_LOADED_ALWAYS,   [ENF_PART_NEEDED] = ENF_LOADED_ALWAYS,
+    };
+    return (enf_loaded)loads[spec->part];
+}
 
 int64_t enf_view_count(const enf_file_view *view, enf_dimension dimension) {
     if (counts[dimension].size == 0) return 1;

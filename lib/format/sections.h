@@ -58,7 +58,9 @@ typedef enum enf_dimension {
 /// are optional, or needed: without knowing these the others are misread, so their section says so
 /// (ENF_FILE_MUST_KNOW). These two come last.
 typedef enum enf_part {
-    ENF_PART_CORE,
+    ENF_PART_CORE, ///< the first three must be there
+    ENF_PART_CELLS,
+    ENF_PART_LOCATION,
     ENF_PART_EXACT,
     ENF_PART_GEOMETRY,
     ENF_PART_PVS,
@@ -67,6 +69,18 @@ typedef enum enf_part {
     ENF_PART_OPTIONAL,
     ENF_PART_NEEDED
 } enf_part;
+
+/// What is checked and shown together: a bit of enf_load each, but for the first.
+typedef enum enf_loaded {
+    ENF_LOADED_ALWAYS,
+    ENF_LOADED_CELLS,
+    ENF_LOADED_LOCATION,
+    ENF_LOADED_SIGHT,
+    ENF_LOADED_SEEN,
+    ENF_LOADED_DRAW,
+    ENF_LOADED_EXACT,
+    ENF_LOADS
+} enf_loaded;
 
 /// What the numbers of a section may be.
 typedef enum enf_rule {
@@ -92,6 +106,9 @@ typedef struct enf_section_spec {
 
 extern const enf_section_spec enf_section_specs[];
 extern const int enf_section_spec_count;
+
+/// What a section is loaded with.
+enf_loaded enf_section_load(const enf_section_spec *spec);
 
 /// The view's count of a dimension.
 int64_t enf_view_count(const enf_file_view *view, enf_dimension dimension);

@@ -5,7 +5,7 @@
 #include "format/read.h"
 
 #include "format/pvs_row.h"
-#include "format/sections.h"
+#include "format/rules.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,89 +42,6 @@ static bool is_power_of_two(double value) {
     int exponent;
     return isfinite(value) && value > 0 && frexp(value, &exponent) == 0.5;
 }
-
-// --- Rules that the list of sections names. Each returns the first bad element, or -1.
-// ---------------------------
-
-static int64_t find_bad_index(const int32_t *values, int64_t count, int32_t lowest, int64_t end) {
-    if (end <= lowest) return count ? 0 : -1;
-    uint32_t span = (uint32_t)(end - lowest), bad = 0;
-    for (int64_t i = 0; i < count; i++) bad |= (uint32_t)values[i] - (uint32_t)lowest >= span;
-    if (!bad) return -1;
-    int64_t i = 0;
-    while (in_range(values[i], lowest, end)) i++;
-    return i;
-}
-
-static int64_t find_bad_offset32(const int32_t *offsets, int64_t count, int64_t end) {
-    if (offsets[0] != 0) return 0;
-    for (int64_t i = 0; i < count; i++) {
-        if (offsets[i + 1] < offsets[i]) return i + 1;
-    }
-    return offsets[count] == end ? -1 : count;
-}
-
-static int64_t find_bad_offset64(const int64_t *offsets, int64_t count, int64_t end) {
-    if (offsets[0] != 0) return 0;
-    for (int64_t i = 0; i < count; i++) {
-        if (offsets[i + 1] < offsets[i]) return i + 1;
-    }
-    return offsets[count] == end ? -1 : count;
-}
-
-static int64_t find_bad_corner(const enf_file_view *view, const enf_file_corner *corners, int64_t count) {
-    uint32_t vertices = (uint32_t)view->vertex_count, planes = (uint32_t)view->plane_count, bad = 0;
-    for (int64_t i = 0; i < count; i++)
-        bad |= ((uint32_t)corners[i].vertex >= vertices) | ((uint32_t)corners[i].edge_plane >= planes);
-    if (!bad) return -1;
-    int64_t i = 0;
-    while ((uint32_t)corners[i].vertex < vertices && (uint32_t)corners[i].edge_plane < planes) i++;
-    return i;
-}
-
-static int64_t find_bad_flag(const uint8_t *values, int64_t count) {
-    for (int64_t i = 0; i < count; i++) {
-        if (values[i] > 1) return i;
-    }
-    return -1;
-}
-
-/// NaN compares false with everything, so it is found as well.
-static int64_t find_bad_double(const double *values, int64_t count, double largest) {
-    for (int64_t i = 0; i < count; i++) {
-        if (!(fabs(values[i]) <= largest)) return i;
-    }
-    return -1;
-}
-
-static int64_t find_bad_element(const enf_file_view *view, const enf_section_spec *spec) {
-    const void *array = enf_view_array(view, spec);
-    int64_t count = enf_view_count(view, spec->dimension), target = enf_view_count(view, spec->target);
-    int64_t numbers = count * (spec->element_size / sizeof(int32_t)), bad = -1;
-    switch ((enf_rule)spec->rule) {
-    case ENF_RULE_NONE:
-        break;
-    case ENF_RULE_INDEX:
-        bad = find_bad_index(array, numbers, spec->lowest, target);
-        return bad < 0 ? bad : bad / (int64_t)(spec->element_size / sizeof(int32_t));
-    case ENF_RULE_OFFSETS32:
-        return find_bad_offset32(array, count, target);
-    case ENF_RULE_OFFSETS64:
-        return find_bad_offset64(array, count, target);
-    case ENF_RULE_CORNERS:
-        return find_bad_corner(view, array, count);
-    case ENF_RULE_FLAG:
-        return find_bad_flag(array, count);
-    case ENF_RULE_FINITE:
-    case ENF_RULE_GRID:
-        bad = find_bad_double(array, numbers / 2, spec->rule == ENF_RULE_GRID ? ENF_FILE_GRID_MAX : 0x1p1000);
-        return bad < 0 ? bad : bad / (int64_t)(spec->element_size / sizeof(double));
-    }
-    return -1;
-}
-
-// --- Sections that hold records
-// ----------------------------------------------------------------------------------
 
 static bool is_string(const enf_file_view *view, uint32_t string) {
     return (int64_t)string < view->string_bytes;
@@ -249,7 +166,7 @@ static enf_status check_planes(checker *check) {
     }
     // Located points are whole numbers of the finer grid; beyond 2^53 of its steps they would not be.
     double largest = ENF_FILE_GRID_MAX / view->frame->locate_scale;
-    int64_t bad = find_bad_double((const double *)view->points, (int64_t)view->point_count * 3, largest);
+    int64_t bad = enf_find_bad_double((const double *)view->points, (int64_t)view->point_count * 3, largest);
     return bad < 0 ? ENF_OK : element_fails(check->error, "POINT", bad / 3);
 }
 
@@ -414,20 +331,36 @@ static enf_status check_sight(checker *check) {
     return check_barrier_tree(check, "PORTTREE", view->portal_nodes, view->portal_node_count, &vertices);
 }
 
-enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
+// --- Part by part: the numbers by their rules, then what takes more than a rule
+
+typedef enf_status check_part(checker *check);
+
+static check_part *const checks[ENF_LOADS][4] = {
+    [ENF_LOADED_ALWAYS] = {check_head, check_regions},
+    [ENF_LOADED_CELLS] = {check_portals, check_cells},
+    [ENF_LOADED_LOCATION] = {check_planes, check_boxes, check_start, check_cut_trees},
+    [ENF_LOADED_SIGHT] = {check_sight},
+    [ENF_LOADED_SEEN] = {check_pvs},
+    [ENF_LOADED_DRAW] = {check_geometry},
+    [ENF_LOADED_EXACT] = {check_exact},
+};
+
+enf_status enf_view_check_load(const enf_file_view *view, enf_loaded load, enf_error *error) {
     for (int i = 0; i < enf_section_spec_count; i++) {
         const enf_section_spec *spec = &enf_section_specs[i];
-        if (!enf_view_array(view, spec)) continue;
-        int64_t bad = find_bad_element(view, spec);
+        if (enf_section_load(spec) != load || !enf_view_array(view, spec)) continue;
+        int64_t bad = enf_find_bad_element(view, spec);
         if (bad >= 0) return element_fails(error, spec->tag, bad);
     }
-    static enf_status (*const checks[])(checker *) = {
-        check_head,  check_regions,   check_portals, check_cells,    check_planes, check_boxes,
-        check_start, check_cut_trees, check_exact,   check_geometry, check_pvs,    check_sight};
     checker check = {view, error};
-    for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
-        enf_status status = checks[i](&check);
-        if (status) return status;
-    }
-    return ENF_OK;
+    enf_status status = ENF_OK;
+    for (int i = 0; !status && i < 4 && checks[load][i]; i++) status = checks[load][i](&check);
+    return status;
+}
+
+enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
+    enf_status status = ENF_OK;
+    for (int load = 0; !status && load < ENF_LOADS; load++)
+        status = enf_view_check_load(view, (enf_loaded)load, error);
+    return status;
 }

@@ -69,7 +69,7 @@ enf_status enf_world_follow(const enf_world *world, const enf_instance *instance
     const enf_file_view *view = enf_world_file(world);
     *stepped = (enf_stepped){.place = step->place, .portal = -1};
     for (int a = 0; a < 3; a++) stepped->matrix[5 * a] = 1;
-    if (!view->sight) return enf_fail_sight(error);
+    if (!view->sight) return enf_fail_sight(world, error);
     if (stepped->place.cell >= view->cell_count) stepped->place.cell = -1;
     enf_way way = {.view = view, .instance = instance};
     enf_passed passed = {step->portals, step->portal_capacity, 0};

@@ -6,6 +6,9 @@
 // them.)
 #include "run/instance.h"
 
+#include "base/options.h"
+#include "run/open.h"
+
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -34,8 +37,11 @@ struct enf_instance {
 
 enf_status enf_instance_create(enf_instance **out, const enf_world *world,
                                const enf_instance_options *options, enf_error *error) {
-    (void)options;
     *out = NULL;
+    enf_instance_options chosen; // has no members yet
+    enf_status status = enf_options_take(&chosen, sizeof chosen, options, "enf_instance_options", error);
+    if (!status) status = enf_world_need(world, ENF_LOAD_CELLS, error);
+    if (status) return status;
     const enf_file_view *view = enf_world_file(world);
     enf_instance *instance = calloc(1, sizeof *instance);
     door *doors = calloc((size_t)view->portal_count / 2 + 1, sizeof *doors);

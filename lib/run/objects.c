@@ -4,6 +4,8 @@
 // common case.
 #include "run/objects.h"
 
+#include "base/options.h"
+#include "run/open.h"
 #include "run/query.h"
 #include "run/shape.h"
 #include "run/take.h"
@@ -41,12 +43,16 @@ static enf_status take_memory(enf_objects *objects, const enf_world *world, enf_
     return enf_query_create(&objects->query, world, &options, error);
 }
 
-enf_status enf_objects_create(enf_objects **out, const enf_world *world, const enf_objects_options *options,
+enf_status enf_objects_create(enf_objects **out, const enf_world *world, const enf_objects_options *given,
                               enf_error *error) {
     *out = NULL;
-    int32_t objects_max = options && options->objects_max ? options->objects_max : OBJECTS_DEFAULT;
+    enf_objects_options options;
+    enf_status status = enf_options_take(&options, sizeof options, given, "enf_objects_options", error);
+    if (!status) status = enf_world_need(world, ENF_LOAD_CELLS | ENF_LOAD_LOCATION, error);
+    if (status) return status;
+    int32_t objects_max = options.objects_max ? options.objects_max : OBJECTS_DEFAULT;
     int32_t links_default = objects_max / 2 <= INT32_MAX / 8 ? objects_max * LINKS_PER_OBJECT : 0;
-    int32_t links_max = options && options->links_max ? options->links_max : links_default;
+    int32_t links_max = options.links_max ? options.links_max : links_default;
     if (objects_max < 0 || links_max < 0 || links_max > INT32_MAX - objects_max)
         return enf_fail(error, ENF_BAD_USAGE,
                         "%ld moving objects with %ld links; give numbers from 0 to a thousand million",
@@ -57,10 +63,9 @@ enf_status enf_objects_create(enf_objects **out, const enf_world *world, const e
     objects->cell_count = enf_world_file(world)->cell_count;
     objects->objects_max = objects_max;
     objects->links_max = links_max;
-    enf_status status =
-        objects->cell_count > INT32_MAX - 2
-            ? enf_fail(error, ENF_BAD_USAGE, "the world has too many cells for moving objects")
-            : take_memory(objects, world, error);
+    status = objects->cell_count > INT32_MAX - 2
+                 ? enf_fail(error, ENF_BAD_USAGE, "the world has too many cells for moving objects")
+                 : take_memory(objects, world, error);
     if (status) {
         enf_objects_free(objects);
         return status;

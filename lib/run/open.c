@@ -2,35 +2,25 @@
 // Opening and closing: a mapped file, or one that already lies in memory.
 #include "run/open.h"
 
+#include "base/options.h"
 #include "format/locate.h"
-#include "format/read.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-struct enf_world {
-    enf_file_view view;
-    void *mapping; ///< null: the bytes are the caller's
-    size_t mapping_size;
-};
-
-static enf_status open_bytes(enf_world **out, const void *bytes, size_t size, const enf_open_options *options,
+static enf_status open_bytes(enf_world **world, const void *bytes, size_t size, const enf_open_options *given,
                              enf_error *error) {
-    enf_world *world = calloc(1, sizeof *world);
-    if (!world) return enf_fail_memory(error, "opening a world");
-    bool skip_checksums = options && options->skip_checksums;
-    enf_status status = enf_file_read(&world->view, bytes, size, skip_checksums, error);
-    if (status) {
-        free(world);
-        return status;
-    }
-    *out = world;
-    return ENF_OK;
+    enf_open_options options;
+    enf_status status = enf_options_take(&options, sizeof options, given, "enf_open_options", error);
+    if (status) return status;
+    if ((unsigned)options.mode > ENF_OPEN_LAZY)
+        return enf_fail(error, ENF_BAD_USAGE, "a world is opened whole or lazily");
+    uint32_t loads = options.mode == ENF_OPEN_LAZY ? 0 : ENF_LOAD_ALL;
+    return enf_world_show(world, bytes, size, loads, options.skip_checksums, error);
 }
 
 enf_status enf_world_open_memory(enf_world **world, const void *bytes, size_t size,
@@ -92,27 +82,13 @@ enf_status enf_world_open_path(enf_world **world, const char *path, const enf_op
         name_path(error, path);
         return status;
     }
-    (*world)->mapping = mapping;
-    (*world)->mapping_size = size;
+    enf_world_set_mapping(*world, mapping, size);
     return ENF_OK;
 }
 
-void enf_world_close(enf_world *world) {
-    if (!world) return;
-    if (world->mapping) munmap(world->mapping, world->mapping_size);
-    free(world);
-}
-
-bool enf_world_is_mapped(const enf_world *world) {
-    return world->mapping != NULL;
-}
-
-const enf_file_view *enf_world_file(const enf_world *world) {
-    return &world->view;
-}
-
 const char *enf_world_string(const enf_world *world, uint32_t string) {
-    return (int64_t)string < world->view.string_bytes ? world->view.strings + string : "";
+    const enf_file_view *view = enf_world_file(world);
+    return (int64_t)string < view->string_bytes ? view->strings + string : "";
 }
 
 enf_place enf_world_locate(const enf_world *world, const double point[3], int32_t hint) {

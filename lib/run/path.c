@@ -2,6 +2,8 @@
 #include "enfilade/path.h"
 
 #include "base/array.h"
+#include "base/options.h"
+#include "run/open.h"
 #include "run/path_finder.h"
 #include "run/path_pull.h"
 #include "run/vector.h"
@@ -16,7 +18,10 @@ enum { SWEEPS = 200, LANDMARKS = 4, SOUND_STEPS = 4096, SOUND_STEPS_MOST = 1 << 
 enf_status enf_paths_create(enf_paths **out, const enf_world *world, const enf_paths_options *options,
                             enf_error *error) {
     *out = NULL;
-    enf_paths_options chosen = options ? *options : (enf_paths_options){0};
+    enf_paths_options chosen;
+    enf_status status = enf_options_take(&chosen, sizeof chosen, options, "enf_paths_options", error);
+    if (!status) status = enf_world_need(world, ENF_LOAD_CELLS | ENF_LOAD_LOCATION, error);
+    if (status) return status;
     enf_paths *paths = calloc(1, sizeof *paths);
     if (!paths) return enf_fail_memory(error, "paths");
     if (chosen.landmarks < 0 || chosen.landmarks > ENF_PATH_LANDMARKS_MAX) {
@@ -56,9 +61,12 @@ void enf_paths_get_info(const enf_paths *paths, enf_paths_info *info) {
 }
 
 enf_status enf_path_finder_create(enf_path_finder **out, const enf_paths *paths,
-                                  const enf_path_finder_options *options, enf_error *error) {
+                                  const enf_path_finder_options *given, enf_error *error) {
     *out = NULL;
-    int32_t steps = options && options->sound_steps_max ? options->sound_steps_max : SOUND_STEPS;
+    enf_path_finder_options options;
+    enf_status status = enf_options_take(&options, sizeof options, given, "enf_path_finder_options", error);
+    if (status) return status;
+    int32_t steps = options.sound_steps_max ? options.sound_steps_max : SOUND_STEPS;
     if (steps < 0 || steps > SOUND_STEPS_MOST)
         return enf_fail(error, ENF_BAD_USAGE, "%ld steps for sounds: 1 to %ld are possible", (long)steps,
                         (long)SOUND_STEPS_MOST);

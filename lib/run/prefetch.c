@@ -6,6 +6,7 @@
 #include "enfilade/prefetch.h"
 
 #include "format/pvs_row.h"
+#include "run/open.h"
 #include "run/take.h"
 
 #include <math.h>
@@ -30,6 +31,8 @@ struct enf_prefetch {
 
 enf_status enf_prefetch_create(enf_prefetch **out, const enf_world *world, enf_error *error) {
     *out = NULL;
+    enf_status status = enf_world_need(world, ENF_LOAD_CELLS | ENF_LOAD_SEEN, error);
+    if (status) return status;
     enf_prefetch *prefetch = calloc(1, sizeof *prefetch);
     if (!prefetch) return enf_fail_memory(error, "a prefetch list");
     prefetch->view = enf_world_file(world);

@@ -4,7 +4,9 @@
 // if none that it has holds it: what the smaller one reaches, the larger one does.
 #include "run/query.h"
 
+#include "base/options.h"
 #include "run/instance.h"
+#include "run/open.h"
 #include "run/shape.h"
 #include "run/take.h"
 
@@ -26,12 +28,14 @@ static enf_status check_options(const enf_query_options *options, enf_error *err
                     (long)options->cells_max, (long)options->images_max);
 }
 
-enf_status enf_query_create(enf_query **out, const enf_world *world, const enf_query_options *options,
+enf_status enf_query_create(enf_query **out, const enf_world *world, const enf_query_options *given,
                             enf_error *error) {
-    static const enf_query_options defaults = {.size = sizeof defaults};
     *out = NULL;
-    if (!options) options = &defaults;
-    enf_status status = check_options(options, error);
+    enf_query_options chosen, *options = &chosen;
+    enf_status status = enf_options_take(&chosen, sizeof chosen, given, "enf_query_options", error);
+    if (!status) status = check_options(options, error);
+    uint32_t loads = ENF_LOAD_CELLS | ENF_LOAD_LOCATION;
+    if (!status) status = enf_world_need(world, loads | (options->skip_triangles ? 0 : ENF_LOAD_DRAW), error);
     if (status) return status;
     enf_query *query = calloc(1, sizeof *query);
     if (!query) return enf_fail_memory(error, "a query object");

@@ -177,7 +177,7 @@ enf_status enf_ray_cast(const enf_world *world, const enf_instance *instance, co
                         enf_ray_hit *hit, enf_error *error) {
     const enf_file_view *view = enf_world_file(world);
     *hit = (enf_ray_hit){.end = ENF_RAY_NOTHING, .triangle = -1, .portal = -1, .cell = -1};
-    if (!view->sight) return enf_fail_sight(error);
+    if (!view->sight) return enf_fail_sight(world, error);
     bool good = take_direction(ray->direction, hit->direction) && !isnan(ray->length);
     for (int a = 0; a < 3; a++) {
         good = good && isfinite(ray->origin[a]);

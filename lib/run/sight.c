@@ -54,7 +54,7 @@ enf_status enf_sight_between(const enf_world *world, const enf_instance *instanc
     const enf_place nowhere = {-1, -1, -1, -1, ENF_WORLD_OUTSIDE};
     *sight = (enf_sight){.from = nowhere, .to = nowhere, .triangle = -1, .portal = -1};
     const enf_file_view *view = enf_world_file(world);
-    if (!view->sight) return enf_fail_sight(error);
+    if (!view->sight) return enf_fail_sight(world, error);
     enf_way way = {.view = view, .instance = instance, .transforms_stop = true};
     if (!find_ends(world, query, sight) || !enf_way_set(&way, query->from, query->to)) return ENF_OK;
     int32_t wall = find_wall(view, &way.segment, query->stopped_by_detail);

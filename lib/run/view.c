@@ -2,6 +2,8 @@
 // Views: memory, cameras in, lists out.
 #include "enfilade/view.h"
 
+#include "base/options.h"
+#include "run/open.h"
 #include "run/view_parts.h"
 
 #include <math.h>
@@ -10,9 +12,8 @@
 
 enum { EDGES_DEFAULT = 8, REGIONS_DEFAULT = 8, TRANSFORMS_DEFAULT = 4, VISITS_DEFAULT = 16384 };
 
-static enf_status fill_options(enf_view *view, const enf_view_options *options, enf_error *error) {
+static enf_status fill_options(enf_view *view, enf_error *error) {
     enf_view_options *o = &view->options;
-    if (options) *o = *options;
     if (o->edges_max == 0) o->edges_max = EDGES_DEFAULT;
     if (o->edges_max > ENF_VIEW_EDGES_MAX) o->edges_max = ENF_VIEW_EDGES_MAX;
     if (o->regions_max == 0) o->regions_max = REGIONS_DEFAULT;
@@ -41,13 +42,18 @@ static double find_reach(const enf_file_view *file) {
 enf_status enf_view_create(enf_view **out, const enf_world *world, const enf_view_options *options,
                            enf_error *error) {
     *out = NULL;
+    enf_view_options chosen;
+    enf_status status = enf_options_take(&chosen, sizeof chosen, options, "enf_view_options", error);
+    if (!status) status = enf_world_need(world, ENF_LOAD_CELLS | ENF_LOAD_LOCATION | ENF_LOAD_SEEN, error);
+    if (status) return status;
     enf_view *view = calloc(1, sizeof *view);
     if (!view) return enf_fail_memory(error, "a view");
+    view->options = chosen;
     view->world = world;
     view->file = enf_world_file(world);
     view->reach = find_reach(view->file);
     view->hint = -1;
-    enf_status status = fill_options(view, options, error);
+    status = fill_options(view, error);
     if (!status) {
         const enf_view_options *o = &view->options;
         int32_t cells = view->file->cell_count;

@@ -2,6 +2,7 @@
 #include "run/way.h"
 
 #include "run/crossings.h"
+#include "run/open.h"
 #include "run/walk.h"
 
 bool enf_way_set(enf_way *way, const double from[3], const double to[3]) {
@@ -97,7 +98,10 @@ enf_way_end enf_way_pass(const enf_way *way, double end, int32_t *cell, int32_t 
     return ended;
 }
 
-enf_status enf_fail_sight(enf_error *error) {
+enf_status enf_fail_sight(const enf_world *world, enf_error *error) {
+    if (enf_world_has(world, ENF_LOAD_SIGHT))
+        return enf_fail(error, ENF_BAD_USAGE,
+                        "lines of sight are not loaded; call enf_world_load with ENF_LOAD_SIGHT");
     return enf_fail(error, ENF_BAD_INPUT,
                     "the world file has no part for lines of sight; compile the world again");
 }

@@ -51,8 +51,8 @@ enf_way_end enf_way_pass(const enf_way *way, double end, int32_t *cell, int32_t 
 /// The point at a share of the way.
 void enf_way_point(const enf_way *way, double share, double point[3]);
 
-/// ENF_BAD_INPUT, in words: the file has no sight part.
-enf_status enf_fail_sight(enf_error *error);
+/// In words: ENF_BAD_INPUT if the file has no sight part, ENF_BAD_USAGE if it is not loaded.
+enf_status enf_fail_sight(const enf_world *world, enf_error *error);
 
 /// matrix (3 x 4) times a point.
 void enf_transform_point(const double matrix[12], const double point[3], double moved[3]);

@@ -206,6 +206,18 @@ typedef struct enf_file_triangle {
     int32_t cell;         ///< detail: the cell that holds its middle, or -1; otherwise -1
 } enf_file_triangle;
 
+/// The parts of a world that can be checked and used one by one, to be combined. What is in none of them (how
+/// the world was made, its frame, regions, spawns and texts) is always there.
+typedef enum enf_load {
+    ENF_LOAD_CELLS = 1,    ///< cells and portals
+    ENF_LOAD_LOCATION = 2, ///< where points are
+    ENF_LOAD_SIGHT = 4,    ///< lines of sight
+    ENF_LOAD_SEEN = 8,     ///< which cells a cell may see
+    ENF_LOAD_DRAW = 16,    ///< triangles
+    ENF_LOAD_EXACT = 32,   ///< the exact complex, for `enfilade check`
+    ENF_LOAD_ALL = 63
+} enf_load;
+
 /// Pointers into a checked file. All arrays are the file's own bytes; "offsets" arrays have one entry more
 /// than what they divide. Parts that a file may leave out have null pointers and counts of 0.
 typedef struct enf_file_view {

@@ -2,7 +2,9 @@
 // The runtime: opens a compiled world and answers questions about it.
 //
 // A world is immutable once open: any number of threads may query it at once. No query allocates, and nothing
-// in a file is trusted: what opens has been checked, every count and index of it.
+// in a file is trusted: what can be asked about has been checked, every count and index of it. That is one
+// pass over the file at the speed of memory when it is opened; or, when it is opened lazily, over each part
+// of it when that is loaded, and parts that are not loaded are never touched.
 #ifndef ENFILADE_RUN_H
 #define ENFILADE_RUN_H
 
@@ -14,10 +16,16 @@ extern "C" {
 
 typedef struct enf_world enf_world;
 
+typedef enum enf_open_mode {
+    ENF_OPEN_WHOLE = 0, ///< all parts are checked and loaded
+    ENF_OPEN_LAZY       ///< header, table, and what is small: see enf_world_load
+} enf_open_mode;
+
 /// Options for opening; null or all zero but `size` is the default.
 typedef struct enf_open_options {
     size_t size;         ///< sizeof(enf_open_options)
     bool skip_checksums; ///< trust the disk: counts and indices are checked all the same
+    enf_open_mode mode;
 } enf_open_options;
 
 /// Maps the file at `path` and checks it. ENF_BAD_INPUT: not a world, damaged, or of a newer major version;
@@ -34,13 +42,31 @@ ENF_API enf_status enf_world_open_memory(enf_world **world, const void *bytes, s
 /// Null is fine.
 ENF_API void enf_world_close(enf_world *world);
 
-/// Everything in the file, in place. Lives as long as the world.
+/// Checks parts (enf_load, combined) of a world that was opened lazily, and those that they refer to; from
+/// then on they can be used. A part that is loaded already costs nothing, and one that the file does not have
+/// counts as loaded. ENF_BAD_INPUT: damaged; then nothing of these is loaded, and what was stays.
+/// ENF_NO_RESOURCES without memory.
+///
+/// Before that, a world answers as one that has nothing in these parts: their arrays are null and their
+/// counts 0, points are nowhere, lines of sight fail with ENF_BAD_USAGE. No query loads anything, for it
+/// might take long; but instances, views and whatever else is made from a world load what they need when they
+/// are made.
+///
+/// Any thread may load at any time, while others ask. What was made before a part was loaded does not know
+/// it.
+ENF_API enf_status enf_world_load(enf_world *world, uint32_t loads, enf_error *error);
+
+/// The parts (enf_load) that are loaded.
+ENF_API uint32_t enf_world_loaded(const enf_world *world);
+
+/// Everything in the file that is loaded, in place. Lives as long as the world and never changes: ask again
+/// after loading more.
 ENF_API const enf_file_view *enf_world_file(const enf_world *world);
 
 /// The text at a string offset of the file ("" for one out of range).
 ENF_API const char *enf_world_string(const enf_world *world, uint32_t string);
 
-/// A summary, for people and reports. Volumes in world units cubed.
+/// A summary, for people and reports. Volumes in world units cubed. Parts that are not loaded count nothing.
 typedef struct enf_world_info {
     uint32_t file_major, file_minor;
     uint32_t version[3]; ///< of the compiler
