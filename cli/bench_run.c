@@ -11,6 +11,7 @@
 static const cli_command tables[] = {
     {"objects", "WORLD.enf ...: moving objects, and spheres through portals", cli_bench_run_objects},
     {"locate", "WORLD.enf ...: where points are, with and without a hint; steps", cli_bench_run_locate},
+    {"open", "WORLD.enf ...: opening, lazily and whole, part by part", cli_bench_run_open},
     {"sight", "WORLD.enf ...: lines of sight and rays, by portals passed", cli_bench_run_sight},
     {"view", "WORLD.enf ...: view traversal: time, tightness, and the check against rays",
      cli_bench_run_view},

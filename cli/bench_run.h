@@ -10,6 +10,9 @@ int cli_bench_run_objects(int argc, char **argv);
 /// Points with and without a hint, and steps.
 int cli_bench_run_locate(int argc, char **argv);
 
+/// Opening, lazily and whole.
+int cli_bench_run_open(int argc, char **argv);
+
 /// Lines of sight and rays, by the portals they pass.
 int cli_bench_run_sight(int argc, char **argv);
 

@@ -1,199 +1,38 @@
 // SPDX-License-Identifier: MIT
-// Fuzz target for the opener and the queries (libFuzzer: clang -fsanitize=fuzzer,address,undefined; also
-// called by test_format.c with mutated worlds). Whatever the bytes are, the outcome is an error or a world
-// that can be used.
+// Fuzz target for the opener and the queries (libFuzzer: `./run fuzz`; also called by test_format.c with
+// mutated worlds). Whatever the bytes are, the outcome is an error or a world that can be used.
 #include "base/hash.h"
-#include "enfilade/objects.h"
-#include "enfilade/prefetch.h"
-#include "enfilade/run.h"
-#include "enfilade/sight.h"
+#include "fuzz_queries.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static volatile double sink; // what is read must not be optimised away
-
-static void use_portals(const enf_file_view *file, const enf_file_cell *cell) {
-    for (int32_t i = 0; i < cell->portal_count; i++) {
-        const enf_file_portal *portal = &file->portals[file->cell_portals[cell->portal_first + i]];
-        sink += portal->radius + file->cells[portal->to].volume;
-        for (int32_t p = 0; p < portal->polygon_count; p++) {
-            const enf_file_portal_polygon *polygon = &file->portal_polygons[portal->polygon_first + p];
-            for (int32_t v = 0; v < polygon->vertex_count; v++)
-                sink += file->portal_vertices[polygon->vertex_first + v][2] * polygon->plane[2];
-            if (file->has_exact) sink += (double)file->portal_loop_offset[polygon->loop + 1];
-        }
-    }
-}
-
-static void use_triangles(const enf_world *world, const enf_file_view *file, const enf_file_cell *cell) {
-    for (int64_t i = 0; file->has_geometry && i < cell->triangle_count; i++) {
-        const enf_file_triangle *triangle = &file->triangles[file->cell_triangles[cell->triangle_first + i]];
-        sink += strlen(enf_world_string(world, file->group_names[triangle->group]));
-        if (triangle->material >= 0)
-            sink += strlen(enf_world_string(world, file->material_names[triangle->material]));
-        for (int k = 0; k < 3; k++) {
-            sink += file->render_points[triangle->point[k]][0];
-            if (triangle->normal[k] >= 0) sink += file->render_normals[triangle->normal[k]][2];
-            if (triangle->texcoord[k] >= 0) sink += file->render_texcoords[triangle->texcoord[k]][1];
-        }
-    }
-}
-
-static void use_loops(const enf_file_view *file, int32_t count, const int64_t *offset,
-                      const enf_file_corner *corners) {
-    for (int32_t i = 0; i < count; i++) {
-        for (int64_t k = offset[i]; k < offset[i + 1]; k++) {
-            sink += file->vertex_position[corners[k].vertex][0];
-            sink += file->planes[corners[k].edge_plane][1];
-        }
-    }
-}
-
-static void use_exact(const enf_file_view *file) {
-    if (!file->has_exact) return;
-    use_loops(file, file->facet_count, file->facet_offset, file->facet_corners);
-    use_loops(file, file->cover_count, file->cover_offset, file->cover_corners);
-    use_loops(file, file->piece_count, file->piece_offset, file->piece_corners);
-    use_loops(file, file->portal_loop_count, file->portal_loop_offset, file->portal_loop_corners);
-    for (int32_t i = 0; i < file->fine_count; i++) {
-        for (int32_t k = file->fine_facet[i]; k < file->fine_facet[i + 1]; k++)
-            sink += file->facet_plane[file->fine_facets[k]];
-        for (int64_t k = file->seen_offset[i]; k < file->seen_offset[i + 1]; k++)
-            sink += file->mesh_polygon_source[file->seen[k]];
-    }
-}
-
-static void use_sides(const enf_file_view *file) {
-    for (int32_t f = 0; file->has_exact && f < file->facet_count; f++) {
-        for (int side = 0; side < 2; side++) {
-            if (file->facet_fine[f][side] >= 0) sink += file->fine_facet[file->facet_fine[f][side]];
-        }
-        for (int32_t c = file->facet_cover[f]; c < file->facet_cover[f + 1]; c++) sink += file->cover_side[c];
-        for (int32_t p = file->facet_piece[f]; p < file->facet_piece[f + 1]; p++)
-            sink += file->facet_plane[file->piece_facet[p]];
-    }
-}
-
-/// From one end of each cell's box to the other, with doors, one of them closed, and a portal that leads
-/// round.
-static void use_sight(const enf_world *world, const enf_file_view *file) {
-    enf_instance *instance = NULL;
-    const enf_door closed = {.state = ENF_DOOR_CLOSED};
-    const double round[12] = {1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1, 0};
-    if (enf_instance_create(&instance, world, NULL, NULL)) return;
-    enf_instance_set_door(instance, 2, &closed, NULL);
-    enf_instance_set_transform(instance, 0, 0, round, NULL);
-    for (int32_t i = 0; i < file->cell_count && i < 16; i++) {
-        const enf_place place = {.cell = i, .fine_cell = -1, .region = 0, .tetrahedron = -1};
-        int32_t portals[4];
-        enf_sight_query query = {sizeof query, {0}, {0}, &place, &place, portals, i % 5, i % 2};
-        enf_ray ray = {sizeof ray, {0}, {0}, 0, &place, 0, portals, i % 5, i % 2};
-        enf_step step = {sizeof step, place, {0}, {0}, 0, portals, i % 5};
-        enf_sight sight;
-        enf_ray_hit hit;
-        enf_stepped stepped;
-        for (int a = 0; a < 3; a++) {
-            query.from[a] = step.from[a] = ray.origin[a] = file->cells[i].box_min[a];
-            query.to[a] = step.to[a] = file->cells[i].box_max[a];
-            ray.direction[a] = query.to[a] - query.from[a];
-        }
-        for (int k = 0; k < 2; k++) {
-            if (!enf_sight_between(world, k ? instance : NULL, &query, &sight, NULL))
-                sink += sight.portal_count;
-            if (!enf_ray_cast(world, k ? instance : NULL, &ray, &hit, NULL)) sink += hit.distance;
-            if (!enf_world_follow(world, k ? instance : NULL, &step, &stepped, NULL))
-                sink += stepped.point[0];
-        }
-    }
-    enf_instance_free(instance);
-}
-
-static void use_locate(const enf_world *world, const enf_file_view *file) {
-    int32_t hint = -1;
-    for (int32_t i = 0; i < file->point_count && i < 200; i++) {
-        double at[3];
-        for (int a = 0; a < 3; a++)
-            at[file->frame->axis[a]] = file->points[i][a] * file->frame->step * file->frame->sign[a];
-        for (int k = 0; k < 2; k++, at[k] += 0.3 * file->frame->step) {
-            enf_place place = enf_world_locate(world, at, hint);
-            hint = place.tetrahedron;
-            if (place.cell >= 0) sink += file->cells[place.cell].volume;
-            if (place.region >= 0) sink += file->regions[place.region].volume;
-            sink += strlen(enf_world_kind_name(place.kind));
-        }
-    }
-}
-
-/// A sphere or a box around the middle of a cell, as far as its corners or beyond.
-static enf_shape shape_at(const enf_file_cell *cell, int32_t number) {
-    enf_shape shape = {.kind = number % 2 ? ENF_SHAPE_BOX : ENF_SHAPE_SPHERE};
-    for (int a = 0; a < 3; a++) {
-        shape.centre[a] = cell->box_min[a] / 2 + cell->box_max[a] / 2;
-        shape.half[a] = fabs(cell->box_max[a] / 2 - cell->box_min[a] / 2) * (number % 3);
-    }
-    shape.radius = fmax(shape.half[0], fmax(shape.half[1], shape.half[2]));
-    return shape;
-}
-
-static void use_shapes(const enf_world *world, const enf_file_view *file) {
-    enf_query *query = NULL;
-    enf_objects *objects = NULL;
-    enf_objects_options options = {sizeof options, 8, 16};
-    enf_object near = {0, 0};
-    if (!enf_query_create(&query, world, NULL, NULL) &&
-        !enf_objects_create(&objects, world, &options, NULL)) {
-        for (int32_t i = 0; i < file->cell_count && i < 16; i++) {
-            enf_shape shape = shape_at(&file->cells[i], i);
-            enf_reach reach;
-            enf_query_cells(query, NULL, i, &shape, NULL, 0, &reach, NULL);
-            sink += (double)reach.count + (double)enf_query_triangles(query, NULL, 0);
-            if (enf_objects_add(objects, &shape, 0, &near, &near, NULL)) continue;
-            enf_objects_move(objects, near, &shape, NULL);
-            sink += enf_objects_in_cells(objects, query, &i, 1, NULL, 0);
-        }
-    }
-    enf_objects_free(objects);
-    enf_query_free(query);
-}
-
-static void use_prefetch(const enf_world *world, const enf_file_view *file) {
-    enf_prefetch *prefetch = NULL;
-    if (!enf_prefetch_create(&prefetch, world, NULL)) {
-        for (int32_t i = 0; i < file->cell_count && i < 16; i++) {
-            sink +=
-                enf_prefetch_list(prefetch, i, file->cells[i].box_min, file->cells[i].box_max, 1, NULL, 0);
-            enf_world_advise_cell(world, i, i % 2);
-        }
-    }
-    enf_prefetch_free(prefetch);
-}
-
-static void use(const enf_world *world) {
-    const enf_file_view *file = enf_world_file(world);
-    enf_world_info info;
-    enf_world_get_info(world, &info);
-    sink += (double)strlen(info.options);
-    for (int32_t i = 0; i < file->cell_count; i++) {
-        use_portals(file, &file->cells[i]);
-        use_triangles(world, file, &file->cells[i]);
-    }
-    use_exact(file);
-    use_sides(file);
-    use_sight(world, file);
-    use_locate(world, file);
-    use_shapes(world, file);
-    use_prefetch(world, file);
-}
-
 static void open_and_use(const uint8_t *bytes, size_t size, bool skip_checksums) {
     enf_world *world;
     enf_error error;
-    enf_open_options options = {sizeof options, skip_checksums};
-    if (enf_world_open_memory(&world, bytes, size, &options, &error) == ENF_OK) use(world);
+    enf_open_options options = {.size = sizeof options, .skip_checksums = skip_checksums};
+    if (enf_world_open_memory(&world, bytes, size, &options, &error) == ENF_OK) fuzz_queries(world);
+    enf_world_close(world);
+}
+
+/// The parts one after the other, in an order that depends on the bytes; asked before each. Some parts may be
+/// damaged and others not.
+static void open_lazily_and_use(const uint8_t *bytes, size_t size) {
+    enf_world *world;
+    enf_error error;
+    enf_open_options options = {.size = sizeof options, .skip_checksums = true, .mode = ENF_OPEN_LAZY};
+    if (enf_world_open_memory(&world, bytes, size, &options, &error) == ENF_OK) {
+        uint64_t order = enf_hash64(bytes, size, 0);
+        for (int i = 0; i < 3; i++, order >>= 8) {
+            // Much of a query makes what it needs, and so loads it: only the first round sees an empty world.
+            fuzz_queries(world);
+            enf_world_load(world, (uint32_t)order & ENF_LOAD_ALL, &error);
+        }
+        enf_world_load(world, ENF_LOAD_ALL, &error);
+        fuzz_queries(world);
+    }
     enf_world_close(world);
 }
 
@@ -216,6 +55,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     open_and_use(copy, size, false);
     repair(copy, size);
     open_and_use(copy, size, true);
+    open_lazily_and_use(copy, size);
     free(copy);
     return 0;
 }
