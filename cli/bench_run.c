@@ -9,7 +9,12 @@
 #include <string.h>
 
 static const cli_command tables[] = {
-    {"view", "WORLD.enf ...: view traversal: time, tightness, and the check against rays", cli_bench_run_view},
+    {"objects", "WORLD.enf ...: moving objects, and spheres through portals", cli_bench_run_objects},
+    {"locate", "WORLD.enf ...: where points are, with and without a hint; steps", cli_bench_run_locate},
+    {"sight", "WORLD.enf ...: lines of sight and rays, by portals passed", cli_bench_run_sight},
+    {"view", "WORLD.enf ...: view traversal: time, tightness, and the check against rays",
+     cli_bench_run_view},
+    {"paths", "WORLD.enf ...: paths by table and by search, lines, near cells, sound", cli_bench_run_paths},
 };
 
 enum { TABLE_COUNT = sizeof tables / sizeof *tables };

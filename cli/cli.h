@@ -14,6 +14,7 @@ int cli_compile(int argc, char **argv);
 int cli_info(int argc, char **argv);
 int cli_check(int argc, char **argv);
 int cli_locate(int argc, char **argv);
+int cli_sight(int argc, char **argv);
 int cli_pvs(int argc, char **argv);
 int cli_export(int argc, char **argv);
 int cli_gen(int argc, char **argv);

@@ -14,6 +14,7 @@ static const cli_command commands[] = {
     {"info", "say what is in a world file", cli_info},
     {"check", "test every invariant of a world file exactly", cli_check},
     {"locate", "find the cells of points", cli_locate},
+    {"sight", "say which points see each other", cli_sight},
     {"pvs", "find which cells see which", cli_pvs},
     {"export", "write a world as .obj, .svg, .dot or .json", cli_export},
     {"gen", "write a built-in test world", cli_gen},
@@ -44,7 +45,7 @@ static void print_usage(FILE *file) {
 }
 
 static bool is_later(const char *name) {
-    static const char *const later[] = {"sight", "render", "view"};
+    static const char *const later[] = {"render", "view"};
     for (size_t i = 0; i < sizeof later / sizeof *later; i++)
         if (strcmp(later[i], name) == 0) return true;
     return false;

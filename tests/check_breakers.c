@@ -51,6 +51,27 @@ static bool lose_box(world *w, int index) {
     return index == 0;
 }
 
+static bool move_wall(world *w, int index) {
+    double(*vertices)[3] = WRITABLE(w->view.barrier_vertices);
+    int32_t wall = 0;
+    while (w->view.barriers[wall].kind != ENF_FILE_BARRIER_WALL) wall++;
+    vertices[w->view.barriers[wall].vertex_first][1] += 1;
+    return index == 0;
+}
+
+static bool shrink_wall_box(world *w, int index) {
+    enf_file_barrier_node *nodes = WRITABLE(w->view.wall_nodes);
+    float *low = &nodes[w->view.wall_node_count - 1].bound[2][0][0];
+    *low = nodes[w->view.wall_node_count - 1].bound[2][1][0];
+    return index == 0;
+}
+
+static bool lose_barrier(world *w, int index) {
+    enf_file_barrier_node *nodes = WRITABLE(w->view.portal_nodes);
+    nodes[w->view.portal_node_count - 1].child[0] = -1;
+    return index == 0;
+}
+
 static bool turn_polygon_corners(world *w, int index) {
     int32_t *corner = WRITABLE(w->view.mesh_corners), swap = corner[0];
     corner[0] = corner[1];
@@ -479,6 +500,9 @@ const check_kind check_kinds[] = {
     {"file: positions", move_rounded_vertex},
     {"file: location", shrink_box},
     {"file: location", lose_box},
+    {"file: sight", move_wall},
+    {"file: sight", shrink_wall_box},
+    {"file: sight", lose_barrier},
     {"clean: polygons", turn_polygon_corners},
     {"clean: accounting", miss_polygon},
     {"tetrahedralize: orientation", turn_tetrahedron},

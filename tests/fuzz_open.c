@@ -3,8 +3,12 @@
 // called by test_format.c with mutated worlds). Whatever the bytes are, the outcome is an error or a world
 // that can be used.
 #include "base/hash.h"
+#include "enfilade/objects.h"
+#include "enfilade/prefetch.h"
 #include "enfilade/run.h"
+#include "enfilade/sight.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,6 +78,40 @@ static void use_sides(const enf_file_view *file) {
     }
 }
 
+/// From one end of each cell's box to the other, with doors, one of them closed, and a portal that leads
+/// round.
+static void use_sight(const enf_world *world, const enf_file_view *file) {
+    enf_instance *instance = NULL;
+    const enf_door closed = {.state = ENF_DOOR_CLOSED};
+    const double round[12] = {1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1, 0};
+    if (enf_instance_create(&instance, world, NULL, NULL)) return;
+    enf_instance_set_door(instance, 2, &closed, NULL);
+    enf_instance_set_transform(instance, 0, 0, round, NULL);
+    for (int32_t i = 0; i < file->cell_count && i < 16; i++) {
+        const enf_place place = {.cell = i, .fine_cell = -1, .region = 0, .tetrahedron = -1};
+        int32_t portals[4];
+        enf_sight_query query = {sizeof query, {0}, {0}, &place, &place, portals, i % 5, i % 2};
+        enf_ray ray = {sizeof ray, {0}, {0}, 0, &place, 0, portals, i % 5, i % 2};
+        enf_step step = {sizeof step, place, {0}, {0}, 0, portals, i % 5};
+        enf_sight sight;
+        enf_ray_hit hit;
+        enf_stepped stepped;
+        for (int a = 0; a < 3; a++) {
+            query.from[a] = step.from[a] = ray.origin[a] = file->cells[i].box_min[a];
+            query.to[a] = step.to[a] = file->cells[i].box_max[a];
+            ray.direction[a] = query.to[a] - query.from[a];
+        }
+        for (int k = 0; k < 2; k++) {
+            if (!enf_sight_between(world, k ? instance : NULL, &query, &sight, NULL))
+                sink += sight.portal_count;
+            if (!enf_ray_cast(world, k ? instance : NULL, &ray, &hit, NULL)) sink += hit.distance;
+            if (!enf_world_follow(world, k ? instance : NULL, &step, &stepped, NULL))
+                sink += stepped.point[0];
+        }
+    }
+    enf_instance_free(instance);
+}
+
 static void use_locate(const enf_world *world, const enf_file_view *file) {
     int32_t hint = -1;
     for (int32_t i = 0; i < file->point_count && i < 200; i++) {
@@ -90,6 +128,50 @@ static void use_locate(const enf_world *world, const enf_file_view *file) {
     }
 }
 
+/// A sphere or a box around the middle of a cell, as far as its corners or beyond.
+static enf_shape shape_at(const enf_file_cell *cell, int32_t number) {
+    enf_shape shape = {.kind = number % 2 ? ENF_SHAPE_BOX : ENF_SHAPE_SPHERE};
+    for (int a = 0; a < 3; a++) {
+        shape.centre[a] = cell->box_min[a] / 2 + cell->box_max[a] / 2;
+        shape.half[a] = fabs(cell->box_max[a] / 2 - cell->box_min[a] / 2) * (number % 3);
+    }
+    shape.radius = fmax(shape.half[0], fmax(shape.half[1], shape.half[2]));
+    return shape;
+}
+
+static void use_shapes(const enf_world *world, const enf_file_view *file) {
+    enf_query *query = NULL;
+    enf_objects *objects = NULL;
+    enf_objects_options options = {sizeof options, 8, 16};
+    enf_object near = {0, 0};
+    if (!enf_query_create(&query, world, NULL, NULL) &&
+        !enf_objects_create(&objects, world, &options, NULL)) {
+        for (int32_t i = 0; i < file->cell_count && i < 16; i++) {
+            enf_shape shape = shape_at(&file->cells[i], i);
+            enf_reach reach;
+            enf_query_cells(query, NULL, i, &shape, NULL, 0, &reach, NULL);
+            sink += (double)reach.count + (double)enf_query_triangles(query, NULL, 0);
+            if (enf_objects_add(objects, &shape, 0, &near, &near, NULL)) continue;
+            enf_objects_move(objects, near, &shape, NULL);
+            sink += enf_objects_in_cells(objects, query, &i, 1, NULL, 0);
+        }
+    }
+    enf_objects_free(objects);
+    enf_query_free(query);
+}
+
+static void use_prefetch(const enf_world *world, const enf_file_view *file) {
+    enf_prefetch *prefetch = NULL;
+    if (!enf_prefetch_create(&prefetch, world, NULL)) {
+        for (int32_t i = 0; i < file->cell_count && i < 16; i++) {
+            sink +=
+                enf_prefetch_list(prefetch, i, file->cells[i].box_min, file->cells[i].box_max, 1, NULL, 0);
+            enf_world_advise_cell(world, i, i % 2);
+        }
+    }
+    enf_prefetch_free(prefetch);
+}
+
 static void use(const enf_world *world) {
     const enf_file_view *file = enf_world_file(world);
     enf_world_info info;
@@ -101,7 +183,10 @@ static void use(const enf_world *world) {
     }
     use_exact(file);
     use_sides(file);
+    use_sight(world, file);
     use_locate(world, file);
+    use_shapes(world, file);
+    use_prefetch(world, file);
 }
 
 static void open_and_use(const uint8_t *bytes, size_t size, bool skip_checksums) {

@@ -261,6 +261,8 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"info a.enf --xml", "unknown option '--xml'"},
         {"check", "the world file is missing"},
         {"locate", "the world file is missing"},
+        {"sight", "the world file is missing"},
+        {"bench run sight", "a world file is missing"},
         {"export good.enf", "-o OUT is missing"},
         {"export good.enf -o out.png", "does not tell the form"},
         {"export good.enf -o out", "does not tell the form"},
@@ -302,6 +304,8 @@ static void help_and_version_are_data(void **state) {
         {"info --help", "--json"},
         {"check --help", "usage: enfilade check"},
         {"locate --help", "--kind"},
+        {"sight --help", "x y z  x y z"},
+        {"bench run --help", "locate"},
         {"export --help", "--up"},
         {"gen --help", "rotate="},
         {"gen list", "four-rooms-distorted"},
@@ -361,7 +365,7 @@ static void growth_prints_a_row_per_world_and_a_verdict(void **state) {
 
 static void damaged_world_files_are_refused(void **state) {
     (void)state;
-    static const char *const commands[] = {"info bad.enf", "check bad.enf", "locate bad.enf",
+    static const char *const commands[] = {"info bad.enf", "check bad.enf", "locate bad.enf", "sight bad.enf",
                                            "export bad.enf -o bad.svg"};
     write_text("box.obj", BOX);
     expect_success("compile box.obj -o whole.enf");
@@ -405,6 +409,28 @@ static void locate_answers_line_by_line_until_one_is_malformed(void **state) {
         ran = run_enfilade(input, "locate box.enf");
         assert_int_equal(ran.status, 3);
         assert_string_equal(ran.out, "-1\n");
+        assert_non_null(strstr(ran.err, "stdin:2: "));
+        process_free(&ran);
+    }
+}
+
+/// In a box, everything sees everything; nothing outside sees anything.
+static void sight_answers_line_by_line_until_one_is_malformed(void **state) {
+    (void)state;
+    static const char *const wrong[] = {"1 2 3 4 5", "1 2 3 4 5 6 7", "0 0 0 0 0 nan", "", "0 0 0 1 1 a"};
+    write_text("box.obj", BOX);
+    expect_success("compile box.obj -o box.enf");
+    process ran = run_enfilade(" 0.5\t0.5 0.5  0.1 0.2 .9\r\n9 9 9 .5 .5 .5\n.5 .5 .5 .5 .5 9\n0 0 0 1 1 1",
+                               "sight box.enf");
+    assert_int_equal(ran.status, 0);
+    assert_string_equal(ran.out, "1\n0\n0\n1\n");
+    process_free(&ran);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char input[64];
+        snprintf(input, sizeof input, "9 9 9 9 9 9\n%s\n1 1 1 1 1 1\n", wrong[i]);
+        ran = run_enfilade(input, "sight box.enf");
+        assert_int_equal(ran.status, 3);
+        assert_string_equal(ran.out, "0\n");
         assert_non_null(strstr(ran.err, "stdin:2: "));
         process_free(&ran);
     }
@@ -462,6 +488,7 @@ int main(void) {
         cmocka_unit_test(growth_prints_a_row_per_world_and_a_verdict),
         cmocka_unit_test(damaged_world_files_are_refused),
         cmocka_unit_test(locate_answers_line_by_line_until_one_is_malformed),
+        cmocka_unit_test(sight_answers_line_by_line_until_one_is_malformed),
         cmocka_unit_test(a_killed_compile_leaves_the_old_file_or_the_new_one),
         cmocka_unit_test(an_interrupted_compile_says_so_and_writes_nothing),
     };

@@ -529,6 +529,8 @@ static void each_kind_of_bad_index_is_named(void **state) {
     expect_refusal(s, "COVERSID", 0, 2);
     expect_refusal(s, "PORTAL", 0, 1); // its twin no longer leads back
     expect_refusal(s, "PORTPOLY", 44, 2);
+    expect_refusal(s, "PORTPOLY", 44, 6); // shares corners with another polygon
+    expect_refusal(s, "CELL", 64, (int32_t)section_of(s->bytes, "CELLTRI")->count); // shares triangles
     expect_refusal(s, "CELL", 76, 2);
     expect_refusal(s, "CELLPORT", 0, 2);
     expect_refusal(s, "CELL", 68, 1); // portal 1 leads out of another cell

@@ -155,7 +155,20 @@ static bool facet_lies_at(const fixture *f, int32_t facet, int axis) {
     return true;
 }
 
-/// The wall: a triangle of input and a cover on every facet at half of x.
+/// The wall at half of x, and the screen at half of z if there is one.
+static bool facet_is_wall(const fixture *f, int32_t facet) {
+    const int32_t *corner = f->build.complex.planes[facet];
+    double half = f->side / 2 * FIXTURE_SPACING;
+    if (facet_lies_at(f, facet, 0)) return true;
+    if (!f->has_screen || !facet_lies_at(f, facet, 2)) return false;
+    for (int k = 0; k < 3; k++) {
+        const double *point = &f->build.complex.points[3 * (size_t)corner[k]];
+        if (point[0] > half || point[1] > half) return false;
+    }
+    return true;
+}
+
+/// A triangle of input and a cover on every facet that is wall.
 static void make_wall(fixture *f) {
     enf_complex *c = &f->build.complex;
     enf_mesh *mesh = &f->build.mesh;
@@ -172,7 +185,7 @@ static void make_wall(fixture *f) {
     mesh->polygon_plane = take(f, most, sizeof *mesh->polygon_plane);
     for (int32_t facet = 0; facet < c->facet_count; facet++) {
         c->piece_cover[facet] = -1;
-        if (facet_lies_at(f, facet, 0)) {
+        if (facet_is_wall(f, facet)) {
             int32_t polygon = (int32_t)mesh->polygon_count++;
             const int32_t *corner = c->planes[facet];
             c->piece_cover[facet] = c->covers.count;
@@ -340,8 +353,9 @@ static void make_soup(fixture *f) {
     mesh->detail_count = 1;
 }
 
-void fixture_make(fixture *f, int side, const enf_frame *frame) {
+static void make(fixture *f, int side, const enf_frame *frame, bool has_screen) {
     memset(f, 0, sizeof *f);
+    f->has_screen = has_screen;
     f->side = side;
     f->build.mesh.frame = frame ? *frame : (enf_frame){0.25, {0, 1, 2}, {1, 1, 1}, 1, false, {{0}}};
     make_points(f);
@@ -352,6 +366,14 @@ void fixture_make(fixture *f, int side, const enf_frame *frame) {
     make_regions(f);
     make_portal(f);
     make_soup(f);
+}
+
+void fixture_make(fixture *f, int side, const enf_frame *frame) {
+    make(f, side, frame, false);
+}
+
+void fixture_make_with_screen(fixture *f, int side, const enf_frame *frame) {
+    make(f, side, frame, true);
 }
 
 void fixture_free(fixture *f) {

@@ -12,7 +12,8 @@
 
 typedef struct fixture {
     enf_build build;
-    int side;    ///< n, even
+    int side; ///< n, even
+    bool has_screen;
     int32_t cut; ///< the tetrahedron that is cut; its second fine cell is the last one
     void *memory[FIXTURE_ALLOCATIONS];
     int memory_count;
@@ -20,6 +21,9 @@ typedef struct fixture {
 
 /// The frame's step, axes and signs may be any; null: step 1/4, nothing turned.
 void fixture_make(fixture *fixture, int side, const enf_frame *frame);
+
+/// The same with a screen in the air: a thin wall at half of z, in the cell of small y, all across it.
+void fixture_make_with_screen(fixture *fixture, int side, const enf_frame *frame);
 void fixture_free(fixture *fixture);
 
 /// The tetrahedron that a fine cell is, or is a part of.

@@ -4,11 +4,9 @@
 #include "base/exact.h"
 
 #include "base/limbs.h"
+#include "base/sphere.h"
 
 #include <math.h>
-
-/// Whatever the points, a determinant is not off by more: its magnitude below is at most 6 * 2^162.
-#define SURE 0x1p115
 
 /// A whole number of up to 191 bits, 2^64 * high + low: products can be added up before anything is carried.
 typedef struct parts {
@@ -62,7 +60,7 @@ int enf_points_orient_quickly(const double a[3], const double b[3], const double
     double uy_vz = uy * vz, uz_vy = uz * vy, uz_vx = uz * vx, ux_vz = ux * vz, ux_vy = ux * vy,
            uy_vx = uy * vx;
     double determinant = wx * (uy_vz - uz_vy) + wy * (uz_vx - ux_vz) + wz * (ux_vy - uy_vx);
-    if (fabs(determinant) > SURE) return determinant > 0 ? 1 : -1;
+    if (fabs(determinant) > ENF_ORIENT_SURE) return determinant > 0 ? 1 : -1;
     double magnitude = fabs(wx) * (fabs(uy_vz) + fabs(uz_vy)) + fabs(wy) * (fabs(uz_vx) + fabs(ux_vz)) +
                        fabs(wz) * (fabs(ux_vy) + fabs(uy_vx));
     // Each term is a product of three rounded differences (3u), two rounded products (2u) and three rounded
@@ -74,7 +72,7 @@ int enf_points_orient_quickly(const double a[3], const double b[3], const double
     return ENF_UNSURE;
 }
 
-int enf_points_orient(const double a[3], const double b[3], const double c[3], const double d[3]) {
+int enf_points_orient_closely(const double a[3], const double b[3], const double c[3], const double d[3]) {
     int sign = enf_points_orient_quickly(a, b, c, d);
     return sign == ENF_UNSURE ? enf_points_orient_exactly(a, b, c, d) : sign;
 }
@@ -133,9 +131,7 @@ static parts volume_of(const int64_t z[3], const enf_int128 minor[3], bool negat
 }
 
 /// Rows a, b, c, d of the matrix (x, y, z, x^2 + y^2 + z^2) of the corners as seen from the point.
-/// Apart, so that the many that need it not do not save its registers.
-__attribute__((noinline)) static int side_of_sphere_exactly(const double *const corner[4],
-                                                            const double point[3]) {
+int enf_corners_side_of_sphere_exactly(const double *const corner[4], const double point[3]) {
     int64_t v[4][3];
     for (int i = 0; i < 4; i++) subtract_points(corner[i], point, v[i]);
     enf_int128 near[4], across[2]; // of x and y: of rows (i, i + 1), and of (i, i + 2)
@@ -156,32 +152,8 @@ __attribute__((noinline)) static int side_of_sphere_exactly(const double *const 
     return 0;
 }
 
-/// Shewchuk's bound A for insphere: (16 + 224u)u times the exact sum of magnitudes.
-#define SPHERE_ERROR (17 * 0x1p-53)
-
-/// Is the determinant so large that its sign is sure? No lift is above `largest`, so no coordinate is above
-/// its root: the sum of magnitudes is at most 4 * 6 * largest^2.5. Squares spare the root.
-static bool is_sure(double determinant, double largest) {
-    const double square = largest * largest, factor = 24 * SPHERE_ERROR;
-    return determinant * determinant > factor * factor * (square * square * largest);
-}
-
 int enf_points_side_of_sphere(const double a[3], const double b[3], const double c[3], const double d[3],
                               const double point[3]) {
     const double *const corner[4] = {a, b, c, d};
-    double x[4], y[4], z[4], lift[4];
-    for (int i = 0; i < 4; i++) {
-        x[i] = corner[i][0] - point[0];
-        y[i] = corner[i][1] - point[1];
-        z[i] = corner[i][2] - point[2];
-        lift[i] = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-    }
-    double ab = x[0] * y[1] - x[1] * y[0], bc = x[1] * y[2] - x[2] * y[1], cd = x[2] * y[3] - x[3] * y[2],
-           da = x[3] * y[0] - x[0] * y[3], ac = x[0] * y[2] - x[2] * y[0], bd = x[1] * y[3] - x[3] * y[1];
-    double abc = z[0] * bc - z[1] * ac + z[2] * ab, bcd = z[1] * cd - z[2] * bd + z[3] * bc,
-           cda = z[2] * da + z[3] * ac + z[0] * cd, dab = z[3] * ab + z[0] * bd + z[1] * da;
-    double determinant = (lift[0] * bcd - lift[1] * cda) + (lift[2] * dab - lift[3] * abc);
-    double low = lift[0] > lift[1] ? lift[0] : lift[1], high = lift[2] > lift[3] ? lift[2] : lift[3];
-    if (is_sure(determinant, low > high ? low : high)) return determinant > 0 ? 1 : -1;
-    return side_of_sphere_exactly(corner, point);
+    return enf_corners_side_of_sphere(corner, point);
 }

@@ -6,15 +6,30 @@
 
 #include <stdbool.h>
 
-/// Sign of det(b - a, c - a, d - a): +1 if d is in front of the plane through a, b, c (they turn
-/// counter-clockwise seen from d), -1 behind it, 0 if the four lie in one plane.
-int enf_points_orient(const double a[3], const double b[3], const double c[3], const double d[3]);
-
 enum { ENF_UNSURE = 2 };
 
-/// The two tiers of the same: what doubles can tell, or ENF_UNSURE; and whole numbers.
+/// The two tiers of the predicate below: what doubles can tell, or ENF_UNSURE; and whole numbers.
 int enf_points_orient_quickly(const double a[3], const double b[3], const double c[3], const double d[3]);
 int enf_points_orient_exactly(const double a[3], const double b[3], const double c[3], const double d[3]);
+
+/// Both.
+int enf_points_orient_closely(const double a[3], const double b[3], const double c[3], const double d[3]);
+
+/// Whatever the points, a determinant in doubles is not off by more: its magnitude is at most 6 * 2^162.
+#define ENF_ORIENT_SURE 0x1p115
+
+/// Sign of det(b - a, c - a, d - a): +1 if d is in front of the plane through a, b, c (they turn
+/// counter-clockwise seen from d), -1 behind it, 0 if the four lie in one plane. Most are far from it.
+static inline int enf_points_orient(const double a[3], const double b[3], const double c[3],
+                                    const double d[3]) {
+    double ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
+    double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
+    double wx = d[0] - a[0], wy = d[1] - a[1], wz = d[2] - a[2];
+    double determinant = wx * (uy * vz - uz * vy) + wy * (uz * vx - ux * vz) + wz * (ux * vy - uy * vx);
+    if (determinant > ENF_ORIENT_SURE) return 1;
+    if (determinant < -ENF_ORIENT_SURE) return -1;
+    return enf_points_orient_closely(a, b, c, d);
+}
 
 /// Do the three points lie on a line?
 bool enf_points_collinear(const double a[3], const double b[3], const double c[3]);

@@ -122,4 +122,5 @@ static void check_location(enf_checker *checker) {
 void enf_check_file(enf_checker *checker) {
     check_positions(checker);
     check_location(checker);
+    enf_check_sight(checker);
 }

@@ -87,5 +87,6 @@ void enf_check_decimate(enf_checker *checker);
 void enf_check_drawn(enf_checker *checker); ///< a row of decimate
 void enf_check_portals(enf_checker *checker);
 void enf_check_file(enf_checker *checker);
+void enf_check_sight(enf_checker *checker); ///< a row of file
 
 #endif

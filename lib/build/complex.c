@@ -80,8 +80,8 @@ void enf_complex_measure_cell(const enf_complex *complex, int32_t cell, enf_body
         for (int64_t c = begin; c < end; c++) {
             const double *at = complex->vertex_position[facets->corners[c].vertex];
             for (int k = 0; k < 3; k++) {
-                body->low[k] = fmin(body->low[k], at[k]);
-                body->high[k] = fmax(body->high[k], at[k]);
+                body->low[k] = at[k] < body->low[k] ? at[k] : body->low[k];
+                body->high[k] = at[k] > body->high[k] ? at[k] : body->high[k];
             }
         }
     }

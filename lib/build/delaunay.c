@@ -11,6 +11,7 @@
 #include "base/array.h"
 #include "base/exact.h"
 #include "base/hash.h"
+#include "base/sphere.h"
 #include "build/tet_order.h"
 
 #include <stdlib.h>
@@ -80,8 +81,10 @@ static int side_of_face(const triangulation *d, const int32_t corner[4], int fac
     return orient(d, corner[at[0]], corner[at[1]], corner[at[2]], point);
 }
 
-/// Does the sphere hold a point that lies on it? The last two of the five points decide (see the paper).
-static bool perturbed_sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
+/// Apart, because it is rare. Does the sphere hold a point that lies on it? The last two of the five points
+/// decide (see the paper).
+__attribute__((noinline)) static bool perturbed_sphere_holds(const triangulation *d, const int32_t corner[4],
+                                                             int32_t point) {
     int32_t before = INT32_MAX;
     for (int round = 0; round < 2; round++) {
         int last = -1;
@@ -99,10 +102,10 @@ static bool perturbed_sphere_holds(const triangulation *d, const int32_t corner[
     return false;
 }
 
-static bool sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
-    const int side =
-        enf_points_side_of_sphere(point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, corner[2]),
-                                  point_at(d, corner[3]), point_at(d, point));
+static inline bool sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
+    const double *const at[4] = {point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, corner[2]),
+                                 point_at(d, corner[3])};
+    const int side = enf_corners_side_of_sphere(at, point_at(d, point));
     return side > 0 || (side == 0 && perturbed_sphere_holds(d, corner, point));
 }
 
@@ -117,11 +120,11 @@ static int find_corner(const int32_t corner[4], int32_t point) {
 
 /// Must the tetrahedron go when the point comes? At infinity the sphere is the half-space beyond the hull
 /// and, in the hull's plane, the circle in which that meets the sphere of the tetrahedron inside.
-static bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
+static inline bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
     if (is_finite(d->tets[t].corner)) return sphere_holds(d, d->tets[t].corner, point);
     const int infinity = find_corner(d->tets[t].corner, AT_INFINITY);
     const int side = side_of_face(d, d->tets[t].corner, infinity, point);
-    return side > 0 || (side == 0 && sphere_holds(d, d->tets[d->tets[t].next[infinity] / 4].corner, point));
+    return side > 0 || (side == 0 && sphere_holds(d, d->tets[d->tets[t].next[infinity] >> 2].corner, point));
 }
 
 // ---------------------------------------------------------------------------------------------- insertion
@@ -130,7 +133,7 @@ static bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
 /// tetrahedra cannot lead round in circles (H. Edelsbrunner, 1990).
 static int32_t find_conflict(const triangulation *d, int32_t point) {
     int32_t t = d->last;
-    if (!is_finite(d->tets[t].corner)) t = d->tets[t].next[find_corner(d->tets[t].corner, AT_INFINITY)] / 4;
+    if (!is_finite(d->tets[t].corner)) t = d->tets[t].next[find_corner(d->tets[t].corner, AT_INFINITY)] >> 2;
     for (int32_t came = -1;;) {
         int k = 0;
         for (; k < 4; k++) {
@@ -139,7 +142,7 @@ static int32_t find_conflict(const triangulation *d, int32_t point) {
         }
         if (k == 4) return t;
         came = 4 * t + k;
-        t = d->tets[t].next[k] / 4;
+        t = d->tets[t].next[k] >> 2;
         if (!is_finite(d->tets[t].corner)) return t;
     }
 }
@@ -154,7 +157,7 @@ static bool dig_hole(triangulation *d, int32_t first, int32_t point) {
         if (!enf_array_reserve(d->rim, d->rim_capacity, d->rim_count + 4)) return false;
         const int32_t t = d->hole[i];
         for (int k = 0; k < 4; k++) {
-            const int32_t u = d->tets[t].next[k] / 4;
+            const int32_t u = d->tets[t].next[k] >> 2;
             if (d->seen[u] == d->in_hole) continue;
             if (d->seen[u] != d->not_in_hole) {
                 const bool conflict = is_in_conflict(d, u, point);
@@ -177,8 +180,8 @@ static bool prepare_filling(triangulation *d) {
 }
 
 static void join_faces(triangulation *d, int32_t a, int32_t b) {
-    d->tets[a / 4].next[a % 4] = b;
-    d->tets[b / 4].next[b % 4] = a;
+    d->tets[a >> 2].next[a & 3] = b;
+    d->tets[b >> 2].next[b & 3] = a;
 }
 
 static int32_t take_slot(triangulation *d) {
@@ -190,12 +193,12 @@ static int32_t take_slot(triangulation *d) {
 /// The tetrahedron between a face of the rim and the point. Returns its number.
 static int32_t add_tetrahedron(triangulation *d, int32_t face, int32_t point) {
     const int32_t t = take_slot(d);
-    const tetrahedron *old = &d->tets[face / 4];
-    const int *at = face_corners[face % 4];
+    const tetrahedron *old = &d->tets[face >> 2];
+    const int *at = face_corners[face & 3];
     tetrahedron *new = &d->tets[t];
     *new =
         (tetrahedron){{old->corner[at[0]], old->corner[at[1]], old->corner[at[2]], point}, {-1, -1, -1, -1}};
-    join_faces(d, 4 * t + 3, old->next[face % 4]);
+    join_faces(d, 4 * t + 3, old->next[face & 3]);
     d->last = t;
     return t;
 }
@@ -232,15 +235,15 @@ static void fill_small_hole(triangulation *d, int32_t point) {
 /// Joins the new tetrahedron at a face of the rim to the other one at each edge of that: turns around the
 /// edge through the hole until the rim comes again. There, -1 - the new tetrahedron has been left.
 static void join_tetrahedron(triangulation *d, int32_t face) {
-    const int *at = face_corners[face % 4];
-    const int32_t t = -1 - d->tets[face / 4].next[face % 4], *corner = d->tets[t].corner;
+    const int *at = face_corners[face & 3];
+    const int32_t t = -1 - d->tets[face >> 2].next[face & 3], *corner = d->tets[t].corner;
     for (int k = 0; k < 3; k++) {
         if (d->tets[t].next[k] >= 0) continue;
         const int32_t from = corner[(k + 1) % 3], to = corner[(k + 2) % 3];
-        int32_t u = face / 4, came = face % 4, leave = at[k];
+        int32_t u = face >> 2, came = face & 3, leave = at[k];
         for (int32_t next; (next = d->tets[u].next[leave]) >= 0;) {
-            u = next / 4;
-            came = next % 4;
+            u = next >> 2;
+            came = next & 3;
             leave = 6 - came - find_corner(d->tets[u].corner, from) - find_corner(d->tets[u].corner, to);
         }
         const int32_t other = -1 - d->tets[u].next[leave];
@@ -252,7 +255,7 @@ static void join_tetrahedron(triangulation *d, int32_t face) {
 static void fill_large_hole(triangulation *d, int32_t point) {
     for (size_t i = 0; i < d->rim_count; i++) {
         const int32_t face = d->rim[i], t = add_tetrahedron(d, face, point);
-        d->tets[face / 4].next[face % 4] = -1 - t;
+        d->tets[face >> 2].next[face & 3] = -1 - t;
     }
     for (size_t i = 0; i < d->rim_count; i++) join_tetrahedron(d, d->rim[i]);
 }

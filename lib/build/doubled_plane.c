@@ -88,25 +88,31 @@ ENCLOSED enf_doubled minor(const enf_doubled_plane *a, const enf_doubled_plane *
     return subtract(multiply(a->normal[j], b->normal[k]), multiply(a->normal[k], b->normal[j]));
 }
 
-/// Three planes meet in -at / weight, as seen from the origin, which lies in the first:
-/// at = offset_b * c x a + offset_c * a x b, weight = c . (a x b).
-ENCLOSED void meet(const enf_doubled_plane plane[3], enf_doubled at[3], enf_doubled *weight) {
+/// As seen from the origin, which lies in the first plane: at = offset_b * c x a + offset_c * a x b,
+/// weight = c . (a x b).
+FUSED void enf_doubled_planes_meet(const enf_doubled_plane plane[3], enf_doubled_meeting *meeting) {
     const enf_doubled_plane *a = &plane[0], *b = &plane[1], *c = &plane[2];
-    *weight = (enf_doubled){0, 0};
+    enf_doubled weight = {0, 0};
     for (int i = 0; i < 3; i++) {
         enf_doubled from_b = minor(c, a, i), from_c = minor(a, b, i);
-        at[i] = add(multiply(b->offset, from_b), multiply(c->offset, from_c));
-        *weight = add(*weight, multiply(c->normal[i], from_c));
+        meeting->at[i] = add(multiply(b->offset, from_b), multiply(c->offset, from_c));
+        weight = add(weight, multiply(c->normal[i], from_c));
     }
+    meeting->weight = weight;
+    meeting->size = a->size * b->size * c->size;
+    meeting->reach = b->reach + c->reach;
 }
 
-FUSED bool enf_doubled_planes_meet(const enf_doubled_plane plane[3], const double origin[3],
-                                   double point[3]) {
-    const enf_doubled_plane *a = &plane[0], *b = &plane[1], *c = &plane[2];
-    enf_doubled at[3], weight;
-    double farthest = 0, terms = a->size * b->size * c->size;
-    meet(plane, at, &weight);
-    if (!(fabs(weight.high) > 2 * UNSURE * terms)) return false;
+int enf_doubled_meeting_weight_sign(const enf_doubled_meeting *meeting) {
+    if (!(fabs(meeting->weight.high) > 2 * UNSURE * meeting->size)) return 0;
+    return meeting->weight.high > 0 ? 1 : -1;
+}
+
+FUSED bool enf_doubled_meeting_point(const enf_doubled_meeting *meeting, const double origin[3],
+                                     double point[3]) {
+    const enf_doubled *at = meeting->at, weight = meeting->weight;
+    double farthest = 0;
+    if (enf_doubled_meeting_weight_sign(meeting) == 0) return false;
     for (int i = 0; i < 3; i++) {
         double quotient = at[i].high / weight.high;
         enf_doubled rest = subtract(at[i], multiply_by(weight, quotient));
@@ -116,17 +122,14 @@ FUSED bool enf_doubled_planes_meet(const enf_doubled_plane plane[3], const doubl
         farthest = fabs(quotient) > farthest ? fabs(quotient) : farthest;
     }
     // What `at` can be off, and the weight: the latter may be half of what it seems.
-    double off = ROUNDING * terms * (2 * (b->reach + c->reach) + 6 * (farthest + 1));
+    double off = ROUNDING * meeting->size * (2 * meeting->reach + 6 * (farthest + 1));
     return 2 * off < 0.25 * fabs(weight.high);
 }
 
-FUSED int enf_doubled_planes_sign(const enf_doubled_plane plane[4]) {
-    const enf_doubled_plane *a = &plane[0], *b = &plane[1], *c = &plane[2], *d = &plane[3];
-    enf_doubled at[3], weight;
-    meet(plane, at, &weight);
-    enf_doubled value = multiply(d->offset, weight);
-    for (int i = 0; i < 3; i++) value = subtract(value, multiply(d->normal[i], at[i]));
-    double terms = a->size * b->size * c->size * d->size * (b->reach + c->reach + d->reach);
+FUSED int enf_doubled_meeting_sign(const enf_doubled_meeting *meeting, const enf_doubled_plane *plane) {
+    enf_doubled value = multiply(plane->offset, meeting->weight);
+    for (int i = 0; i < 3; i++) value = subtract(value, multiply(plane->normal[i], meeting->at[i]));
+    double terms = meeting->size * plane->size * (meeting->reach + plane->reach);
     if (fabs(value.high) > UNSURE * terms) return value.high > 0 ? 1 : -1;
     return 0;
 }

@@ -23,12 +23,25 @@ typedef struct enf_doubled_plane {
 bool enf_doubled_plane_set(enf_doubled_plane *plane, const double p[3], const double u[3], const double v[3],
                            const double origin[3]);
 
-/// Sign of the determinant of all coefficients, or 0 if that is not certain. The origin is a point of the
-/// first plane (whose offset is not looked at).
-int enf_doubled_planes_sign(const enf_doubled_plane plane[4]);
+/// Where three planes meet: in origin - at / weight.
+typedef struct enf_doubled_meeting {
+    enf_doubled at[3], weight;
+    double size;  ///< the product of the planes'
+    double reach; ///< the sum of theirs
+} enf_doubled_meeting;
 
-/// The point in which the first three planes meet, rounded, each coordinate off by less than one step (1) or
-/// one unit in the last place, whichever is more. False if that is not certain.
-bool enf_doubled_planes_meet(const enf_doubled_plane plane[3], const double origin[3], double point[3]);
+/// The origin is a point of the first plane (whose offset is not looked at).
+void enf_doubled_planes_meet(const enf_doubled_plane plane[3], enf_doubled_meeting *meeting);
+
+/// Sign of the determinant of the coefficients of the planes that meet and of another, or 0 if that is not
+/// certain.
+int enf_doubled_meeting_sign(const enf_doubled_meeting *meeting, const enf_doubled_plane *plane);
+
+/// Sign of the weight, or 0 if that is not certain.
+int enf_doubled_meeting_weight_sign(const enf_doubled_meeting *meeting);
+
+/// The point in which the planes meet, rounded, each coordinate off by less than one step (1) or one unit in
+/// the last place, whichever is more. False if that is not certain.
+bool enf_doubled_meeting_point(const enf_doubled_meeting *meeting, const double origin[3], double point[3]);
 
 #endif

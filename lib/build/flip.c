@@ -179,7 +179,8 @@ static void list_facets(const flipper *f, const patch *p, facet_list *around, fa
 static int32_t find_facet(const flipper *f, const facet_list *known, const int32_t face[3]) {
     for (int i = 0; i < known->count; i++) {
         const int32_t *corner = f->tets->facet_corners[known->facet[i]];
-        if (corner[0] == face[0] && corner[1] == face[1] && corner[2] == face[2]) return known->facet[i];
+        if (((corner[0] ^ face[0]) | (corner[1] ^ face[1]) | (corner[2] ^ face[2])) == 0)
+            return known->facet[i];
     }
     return -1;
 }

@@ -26,7 +26,7 @@ typedef struct outline {
 
 // ---- which cells
 
-/// Volumes and surfaces of all cells, from one walk over the facets; cones with their tips at a corner of the
+/// Volumes and surfaces of cells, from one walk over the facets; cones with their tips at a corner of the
 /// cell.
 typedef struct sizes {
     double *volume, *surface;
@@ -86,6 +86,35 @@ static bool find_thin(const enf_complex *complex, double crack, const uint8_t *w
     return good;
 }
 
+/// Is a tetrahedron too thick for a gap, whatever rounding does? With edges up to `longest`, its surface is
+/// at most 1.74 longest^2 and at least six times its volume / longest, so volume alone tells that it is
+/// neither flat nor a needle.
+static bool is_thick(const double *points, const int32_t corner[4], double crack) {
+    const double *origin = points + 3 * (size_t)corner[0];
+    double edge[3][3], largest = 0; // squared
+    for (int i = 0; i < 3; i++) {
+        const double *p = points + 3 * (size_t)corner[i + 1];
+        for (int k = 0; k < 3; k++) edge[i][k] = p[k] - origin[k];
+        double square = edge[i][0] * edge[i][0] + edge[i][1] * edge[i][1] + edge[i][2] * edge[i][2];
+        largest = square > largest ? square : largest;
+    }
+    const double *u = edge[0], *v = edge[1], *w = edge[2];
+    double six_volumes = w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
+                         w[2] * (u[0] * v[1] - u[1] * v[0]);
+    double square = 4 * largest; // of the longest edge, at most
+    return six_volumes > square * (6 * crack + 1e-13 * sqrt(square));
+}
+
+/// Most cells are one whole tetrahedron, and most of these are no gaps.
+static void leave_out_thick(const enf_complex *complex, double crack, uint8_t *wall) {
+    for (int32_t t = 0; t < complex->tetrahedron_count; t++) {
+        int32_t cell = -1 - complex->tetrahedron_root[t];
+        if (cell < 0 || !wall[cell]) continue;
+        if (complex->cell_facet[cell + 1] - complex->cell_facet[cell] != 4) continue; // was joined to others
+        if (is_thick(complex->points, complex->tetrahedra[t], crack)) wall[cell] = 0;
+    }
+}
+
 bool enf_gaps_find(const enf_complex *complex, double crack, bool *gap) {
     uint8_t *wall = enf_array_zeroed((size_t)complex->cell_count, sizeof *wall);
     bool good = wall != NULL;
@@ -94,6 +123,7 @@ bool enf_gaps_find(const enf_complex *complex, double crack, bool *gap) {
         for (int side = 0; side < 2; side++)
             if (complex->piece_cover[p] != ENF_PIECE_OPEN && cell[side] >= 0) wall[cell[side]] = 1;
     }
+    if (good) leave_out_thick(complex, crack, wall);
     good = good && find_thin(complex, crack, wall, gap);
     free(wall);
     return good;
@@ -156,9 +186,15 @@ static void project(const enf_complex *complex, int32_t piece, const double orig
     }
 }
 
+static void copy_outline(outline *to, const outline *from) {
+    to->count = from->count;
+    memcpy(to->at, from->at, (size_t)from->count * sizeof *from->at);
+}
+
 /// Keeps what lies left of the line from a to b.
 static void clip(outline *shape, const double a[2], const double b[2]) {
-    outline kept = {.count = 0};
+    outline kept; // only what is counted is set
+    kept.count = 0;
     for (int i = 0; i < shape->count; i++) {
         const double *p = shape->at[i], *q = shape->at[(i + 1) % shape->count];
         double side = cross(a, b, p), next = cross(a, b, q);
@@ -168,7 +204,7 @@ static void clip(outline *shape, const double a[2], const double b[2]) {
         for (int k = 0; k < 2; k++) kept.at[kept.count][k] = p[k] + t * (q[k] - p[k]);
         kept.count++;
     }
-    *shape = kept;
+    copy_outline(shape, &kept);
 }
 
 /// Of the narrowest strip that holds the outline; it has an edge on its side.
@@ -203,6 +239,12 @@ typedef struct place {
     outline open;
 } place;
 
+static void put_place(place *to, int32_t cell, int32_t through, const outline *open) {
+    to->cell = cell;
+    to->through = through;
+    copy_outline(&to->open, open);
+}
+
 static size_t first_port(const layer *l, int32_t cell) {
     size_t low = 0, high = l->count;
     while (low < high) {
@@ -231,11 +273,14 @@ static void look_through(const layer *l, port start, place stack[PLACES_MAX], in
     stack[0].through = start.piece;
     project(complex, start.piece, origin, axes, &stack[0].open);
     for (int steps = 0; waiting > 0 && steps < PLACES_MAX; steps++) {
-        place here = stack[--waiting];
+        place here;
+        const place *next = &stack[--waiting];
+        put_place(&here, next->cell, next->through, &next->open);
         for (size_t k = first_port(l, here.cell); k < l->count && l->ports[k].cell == here.cell; k++) {
             int32_t piece = l->ports[k].piece;
             if (piece == here.through) continue;
-            outline shape, both = here.open;
+            outline shape, both;
+            copy_outline(&both, &here.open);
             project(complex, piece, origin, axes, &shape);
             for (int e = 0; e < shape.count && both.count > 0; e++)
                 clip(&both, shape.at[e], shape.at[(e + 1) % shape.count]);
@@ -245,7 +290,7 @@ static void look_through(const layer *l, port start, place stack[PLACES_MAX], in
             if (to < 0 || !l->gap[to])
                 enf_sets_unite(parent, from < 0 ? outside : from, to < 0 ? outside : to);
             else if (waiting < PLACES_MAX)
-                stack[waiting++] = (place){to, piece, both};
+                put_place(&stack[waiting++], to, piece, &both);
         }
     }
 }

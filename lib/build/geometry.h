@@ -9,6 +9,7 @@
 #ifndef ENF_BUILD_GEOMETRY_H
 #define ENF_BUILD_GEOMETRY_H
 
+#include "build/doubled_plane.h"
 #include "enfilade/base.h"
 
 /// A plane as the floating-point filter sees it: normal . x + offset, with bounds on the coefficients'
@@ -22,24 +23,29 @@ typedef struct enf_plane_filter {
     int32_t axis;                    ///< the axis that the plane is square to (its normal is +-1 then), or -1
 } enf_plane_filter;
 
-/// A crossing of three planes in homogeneous coordinates, with error bounds.
+/// A crossing of three planes in homogeneous coordinates, with error bounds. There are very many.
 typedef struct enf_crossing {
     int32_t plane[3];
-    int32_t weight_sign;           ///< exact sign of the weight
+    int16_t at_unit, weight_unit;  ///< the true values are divisible by two to the power of these
+    int8_t weight_sign;            ///< exact sign of the weight
+    bool located;                  ///< there is a position
     double at[3], weight;          ///< the point is at / weight
     double at_error, weight_error; ///< 0: exact
-    double at_unit, weight_unit;   ///< powers of two that divide the true values
+    double position[3];            ///< rounded; once it has been asked for, or the filter did not do
 } enf_crossing;
 
 /// What decides a predicate: doubles, pairs of doubles, whole numbers of any size.
 enum { ENF_TIER_FILTER, ENF_TIER_PAIRS, ENF_TIER_EXACT, ENF_TIERS };
 
-enum { ENF_FILTERS_KEPT = 64 };
+enum { ENF_FILTERS_KEPT = 64, ENF_MEETINGS_KEPT = 256 };
 
-/// Filters that were made a while ago: what is cut crosses the same planes again and again.
+/// What was made a while ago: cells are cut by the same planes again and again, and their corners held
+/// against one after the other.
 typedef struct enf_kept_filters {
     int32_t plane[ENF_FILTERS_KEPT]; ///< + 1; 0: none
     enf_plane_filter filter[ENF_FILTERS_KEPT];
+    int32_t meeting_of[ENF_MEETINGS_KEPT][3]; ///< the planes; all the same: none
+    enf_doubled_meeting meeting[ENF_MEETINGS_KEPT];
 } enf_kept_filters;
 
 /// Vertices are numbered: points, then crossings.
@@ -113,6 +119,6 @@ static inline void enf_geometry_near(const enf_geometry *geometry, int32_t verte
 
 /// The vertex's coordinates: exact for points, rounded (a few units in the last place of the world's size)
 /// for crossings.
-void enf_geometry_position(const enf_geometry *geometry, int32_t vertex, double position[3]);
+void enf_geometry_position(enf_geometry *geometry, int32_t vertex, double position[3]);
 
 #endif

@@ -198,6 +198,7 @@ static void cut_tetrahedron(cutter *c, int32_t t) {
 static void join_tetrahedra(cutter *c) {
     enf_subdivision *space = &c->space;
     const int32_t *first = c->arrangement->hit_first; // facets that polygons lie on stay
+    const uint8_t *reflex = c->settler.joiner.reflex; // none of these is cut: each has all its edges
     size_t count = space->facet_count;
     for (size_t f = 0; f < count; f++) {
         enf_share *facet = &space->facets[f];
@@ -205,7 +206,7 @@ static void join_tetrahedra(cutter *c) {
     }
     for (size_t f = count; f-- > 0;) {
         const enf_share *facet = &space->facets[f];
-        if (facet->first >= 0 && facet->cell[0] >= 0 && facet->cell[1] >= 0)
+        if (facet->first >= 0 && facet->cell[0] >= 0 && facet->cell[1] >= 0 && !reflex[facet->source])
             enf_joiner_try(&c->settler.joiner, space, (int32_t)f);
     }
     for (size_t f = 0; f < count; f++) space->facets[f].cover = -1; // the polygons come when all is cut

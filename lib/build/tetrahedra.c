@@ -40,7 +40,7 @@ static uint32_t hash_edge(int32_t a, int32_t b) {
 
 /// The slot of the face with these ascending corners, or where it would be. The lowest corner says where to
 /// look, so that faces that are near in space are near in memory.
-static int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
+static inline int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
     int32_t *slots = mesh->slots + mesh->slot_begin[face[0]];
     const uint32_t count = mesh->slot_begin[face[0] + 1] - mesh->slot_begin[face[0]];
     uint32_t at = (uint32_t)((uint64_t)hash_edge(face[1], face[2]) * count >> 32);
@@ -58,7 +58,9 @@ int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32
     return *slot_of(mesh, face);
 }
 
-/// A slot for every face of every tetrahedron, by its lowest corner, and a free one at each corner. Most
+enum { SPARE_SLOTS = 6 }; ///< at each corner, one of them for good: facets that flips make seldom need more
+
+/// A slot for every face of every tetrahedron, by its lowest corner, and spare ones at each corner. Most
 /// faces come twice: that leaves half of the slots free.
 static enf_status make_slots(enf_tet_mesh *mesh, enf_error *error) {
     uint32_t *begin = mesh->slot_begin = enf_array_zeroed((size_t)mesh->point_count + 1, sizeof *begin);
@@ -72,7 +74,7 @@ static enf_status make_slots(enf_tet_mesh *mesh, enf_error *error) {
         begin[one[0] + 1] += 3;
         begin[(one[1] < other[0] ? one[1] : other[0]) + 1]++;
     }
-    for (int32_t i = 0; i < mesh->point_count; i++) begin[i + 1] += begin[i] + 1;
+    for (int32_t i = 0; i < mesh->point_count; i++) begin[i + 1] += begin[i] + SPARE_SLOTS;
     const size_t slots = begin[mesh->point_count];
     mesh->slots = enf_array_new(slots, sizeof *mesh->slots);
     if (!mesh->slots) return enf_fail_memory(error, "the tetrahedra's faces");

@@ -37,7 +37,7 @@ static const double thickness = 32;           ///< a flat polygon is wider than 
 
 typedef struct facing {
     double normal[3], area;
-    int32_t piece;
+    int32_t piece, place; ///< place: in canonical order
 } facing;
 
 typedef struct seeker {
@@ -45,8 +45,9 @@ typedef struct seeker {
     size_t count;
     double reach; ///< in the same unit
     enf_pieces pieces;
-    facing *facings; ///< by falling area
+    facing *facings; ///< by falling area, once that is needed
     size_t facing_count;
+    bool sorted;
     double total; ///< area
     double axes[3][3];
 } seeker;
@@ -138,10 +139,16 @@ static facing face_of(const seeker *s, int32_t piece) {
 static int compare_facings(const void *left, const void *right) {
     const facing *a = left, *b = right;
     if (a->area != b->area) return a->area > b->area ? -1 : 1;
-    return (a->piece > b->piece) - (a->piece < b->piece);
+    return (a->place > b->place) - (a->place < b->place);
 }
 
-/// The polygons in canonical order, largest first.
+/// Largest first. Most soups turn out not to need it.
+static void sort_facings(seeker *s) {
+    if (!s->sorted) qsort(s->facings, s->facing_count, sizeof *s->facings, compare_facings);
+    s->sorted = true;
+}
+
+/// The polygons in canonical order.
 static enf_status list_facings(seeker *s, enf_error *error) {
     int32_t *order = enf_array_new(s->pieces.count, sizeof *order);
     int32_t *copies = enf_array_new(s->pieces.count, sizeof *copies);
@@ -154,13 +161,9 @@ static enf_status list_facings(seeker *s, enf_error *error) {
     for (size_t i = 0; i < kept && status == ENF_OK; i++) {
         facing face = face_of(s, order[i]);
         if (!(face.area > 0)) continue;
-        face.piece = (int32_t)i; // the place in canonical order, for the sort
+        face.place = (int32_t)i;
         s->total += face.area;
         s->facings[s->facing_count++] = face;
-    }
-    if (status == ENF_OK) {
-        qsort(s->facings, s->facing_count, sizeof *s->facings, compare_facings);
-        for (size_t i = 0; i < s->facing_count; i++) s->facings[i].piece = order[s->facings[i].piece];
     }
     free(order);
     free(copies);
@@ -195,13 +198,21 @@ static void measure_extent(const seeker *s, int32_t piece, double extent[3]) {
     for (int a = 0; a < 3; a++) extent[a] = high[a] - low[a];
 }
 
+static int axis_of_facing(const seeker *s, size_t i) {
+    double extent[3];
+    measure_extent(s, s->facings[i].piece, extent);
+    return flat_axis(extent, s->reach, 0);
+}
+
 /// The area square to each of the axes; returns their sum.
-static double measure_aligned(const seeker *s, double area[3]) {
+static double measure_aligned(seeker *s, double area[3]) {
+    size_t begin = 0;
     area[0] = area[1] = area[2] = 0;
+    while (!s->sorted && begin < s->facing_count && axis_of_facing(s, begin) < 0) begin++;
+    if (begin == s->facing_count) return 0;
+    sort_facings(s); // sums depend on the order
     for (size_t i = 0; i < s->facing_count; i++) {
-        double extent[3];
-        measure_extent(s, s->facings[i].piece, extent);
-        int axis = flat_axis(extent, s->reach, 0);
+        int axis = axis_of_facing(s, i);
         if (axis >= 0) area[axis] += s->facings[i].area;
     }
     return area[0] + area[1] + area[2];
@@ -211,6 +222,62 @@ static bool is_aligned_enough(const double area[3], double total) {
     double sum = area[0] + area[1] + area[2], largest = fmax(area[0], fmax(area[1], area[2]));
     double smallest = fmin(area[0], fmin(area[1], area[2]));
     return sum >= aligned_enough * total && sum - largest - smallest >= aligned_twice * total;
+}
+
+// ---- is it worth looking?
+
+enum {
+    BOX_SHARE = 8,
+    BOXES = 2 * BOX_SHARE + 1
+}; ///< boxes of directions, to the side: so many in 1, and in all
+
+static int box_of(double x) {
+    return (int)((x + 1) * BOX_SHARE);
+}
+
+/// A triangle that is square to some axis, if its normal is more than 1/16 off (sine of the angle), is
+/// between two lines 32 reaches apart.
+static bool is_wide(const seeker *s, const facing *face) {
+    double longest = 0;
+    for (int64_t k = 0; k < 3; k++) {
+        const double *p = corner_of(s, face->piece, k), *q = corner_of(s, face->piece, (k + 1) % 3);
+        double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, square = dot(d, d);
+        longest = square > longest ? square : longest;
+    }
+    double least = 17 * s->reach;
+    return enf_pieces_size(&s->pieces, face->piece) == 3 && face->area * face->area > least * least * longest;
+}
+
+/// The most area in three by three by three boxes.
+static double fullest(double (*area)[BOXES][BOXES]) {
+    double most = 0;
+    for (int i = 0; i + 2 < BOXES; i++) {
+        for (int j = 0; j + 2 < BOXES; j++) {
+            for (int k = 0; k + 2 < BOXES; k++) {
+                double sum = 0;
+                for (int n = 0; n < 27; n++) sum += area[i + n / 9][j + n / 3 % 3][k + n % 3];
+                most = sum > most ? sum : most;
+            }
+        }
+    }
+    return most;
+}
+
+/// Can any axes have enough area square to them? Whatever an axis, the normals within 1/16 of it are in the
+/// boxes around its own.
+static bool may_be_worth_turning(const seeker *s) {
+    double area[BOXES][BOXES][BOXES] = {{{0}}}, other = 0;
+    for (size_t i = 0; i < s->facing_count; i++) {
+        const facing *face = &s->facings[i];
+        const double *n = face->normal;
+        if (is_wide(s, face)) {
+            area[box_of(n[0])][box_of(n[1])][box_of(n[2])] += face->area;
+            area[box_of(-n[0])][box_of(-n[1])][box_of(-n[2])] += face->area;
+        } else {
+            other += face->area;
+        }
+    }
+    return 3 * fullest(area) + other > 0.99 * worth_turning * s->total;
 }
 
 // ---- 1 and 2: a first guess
@@ -394,6 +461,8 @@ static void judge(seeker *s, const enf_frame *frame, enf_turn *turn) {
     turn->outcome = ENF_TURN_ALIGNED;
     if (is_aligned_enough(area, s->total)) return;
     turn->outcome = ENF_TURN_NONE;
+    if (!may_be_worth_turning(s)) return;
+    sort_facings(s);
     if (!find_axes(s)) return;
     double aligned = measure_aligned(s, area) / s->total;
     if (aligned < worth_turning || aligned < better_by * turn->aligned_before) return;

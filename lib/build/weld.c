@@ -25,6 +25,7 @@ static uint64_t rising(double x) {
 }
 
 enum { DIGIT_BITS = 11, DIGITS = 6, FEW = 256 }; ///< of a rising number; sites that are sorted by comparing
+enum { FIRST_DIGIT = 3 }; ///< those above it tell nearly all coordinates apart that differ
 
 typedef struct ranked {
     uint64_t key;
@@ -47,7 +48,11 @@ static bool deal_by_digit(const ranked *from, ranked *to, size_t count, int digi
     return true;
 }
 
-/// Sorts by the first coordinate alone. False, with the sites as they were, without memory.
+static uint64_t leading_digits(const enf_site *site) {
+    return rising(site->at[0]) >> DIGIT_BITS * FIRST_DIGIT;
+}
+
+/// Sorts by the leading digits of the first coordinate. False, with the sites as they were, without memory.
 static bool sort_by_first(enf_site *sites, size_t count) {
     ranked *now = enf_array_new(count, sizeof *now), *then = enf_array_new(count, sizeof *then);
     enf_site *given = enf_array_new(count, sizeof *given);
@@ -55,7 +60,7 @@ static bool sort_by_first(enf_site *sites, size_t count) {
     if (good) {
         memcpy(given, sites, count * sizeof *given);
         for (size_t i = 0; i < count; i++) now[i] = (ranked){rising(given[i].at[0]), i};
-        for (int digit = 0; digit < DIGITS; digit++) {
+        for (int digit = FIRST_DIGIT; digit < DIGITS; digit++) {
             if (!deal_by_digit(now, then, count, digit)) continue;
             ranked *swap = now;
             now = then;
@@ -69,6 +74,21 @@ static bool sort_by_first(enf_site *sites, size_t count) {
     return good;
 }
 
+enum { INSERT_MAX = 16 }; ///< sites that are sorted by insertion: at most places there are a few
+
+static void sort_few(enf_site *sites, size_t count) {
+    if (count > INSERT_MAX) {
+        qsort(sites, count, sizeof *sites, compare_sites);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        enf_site one = sites[i];
+        size_t k = i;
+        for (; k > 0 && compare_sites(&sites[k - 1], &one) > 0; k--) sites[k] = sites[k - 1];
+        sites[k] = one;
+    }
+}
+
 void enf_sites_sort(enf_site *sites, size_t count) {
     size_t ordered = 1; // welding and flattening leave most orders as they were
     while (ordered < count && compare_sites(&sites[ordered - 1], &sites[ordered]) <= 0) ordered++;
@@ -78,8 +98,9 @@ void enf_sites_sort(enf_site *sites, size_t count) {
         return;
     }
     for (size_t begin = 0, end; begin < count; begin = end) { // equal ones by the rest
-        for (end = begin + 1; end < count && sites[end].at[0] == sites[begin].at[0];) end++;
-        if (end - begin > 1) qsort(sites + begin, end - begin, sizeof *sites, compare_sites);
+        uint64_t leading = leading_digits(&sites[begin]);
+        for (end = begin + 1; end < count && leading_digits(&sites[end]) == leading;) end++;
+        sort_few(sites + begin, end - begin);
     }
 }
 

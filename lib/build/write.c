@@ -123,7 +123,8 @@ static bool fill_empty(enf_file_view *view) {
     static const double nothing[1] = {0}; // also the one offset of an empty offsets array
     for (int i = 0; i < enf_section_spec_count; i++) {
         const enf_section_spec *spec = &enf_section_specs[i];
-        if (enf_view_array(view, spec) || spec->part >= ENF_PART_PVS) continue;
+        if (enf_view_array(view, spec) || spec->part == ENF_PART_PVS || spec->part >= ENF_PART_OPTIONAL)
+            continue;
         if (enf_view_count(view, spec->dimension) != 0) return false;
         enf_view_set_array(view, spec, nothing);
     }
@@ -504,7 +505,9 @@ static enf_status fill_image(enf_image *image, const enf_build *build, const cha
     if (!status) status = make_cell_portals(image, error);
     if (!status) status = enf_image_neighbours(image, error);
     if (!status) status = enf_image_boxes(image, error);
+    if (!status) status = enf_image_start(image, error);
     if (!status) status = enf_image_draw(image, build, strings, error);
+    if (!status) status = enf_image_sight(image, build, error);
     return status;
 }
 

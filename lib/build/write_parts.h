@@ -24,8 +24,14 @@ enf_status enf_image_neighbours(enf_image *image, enf_error *error);
 /// The hierarchy of boxes around the tetrahedra. Needs points, tetrahedra and the frame.
 enf_status enf_image_boxes(enf_image *image, enf_error *error);
 
+/// Where point location starts. Needs the boxes, too, and the fine cells.
+enf_status enf_image_start(enf_image *image, enf_error *error);
+
 /// Render points, triangles, groups, materials, and what each cell sees. Needs everything else.
 enf_status enf_image_draw(enf_image *image, const enf_build *build, enf_image_strings *strings,
                           enf_error *error);
+
+/// Barriers and their trees, for lines of sight. Needs everything else.
+enf_status enf_image_sight(enf_image *image, const enf_build *build, enf_error *error);
 
 #endif

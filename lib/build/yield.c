@@ -65,7 +65,7 @@ static void renumber_vertices(const enf_yield *yield, const enf_loops *loops, in
 }
 
 /// Keeps the crossings that a loop uses, in order, and rounds them to coordinates.
-static bool take_vertices(enf_yield *yield, const enf_geometry *geometry) {
+static bool take_vertices(enf_yield *yield, enf_geometry *geometry) {
     enf_complex *complex = &yield->complex;
     const enf_loops *loops[] = {&complex->facets, &complex->covers, &complex->pieces};
     int32_t points = geometry->point_count, made = geometry->crossing_count, count = 0;

@@ -3,19 +3,25 @@
 // inside a tetrahedron gives the fine cell. All sides are exact, so a point on a boundary is *known* to be on
 // it, and the rule for boundaries (run.h) can be kept to the letter.
 //
-// A hint, the tetrahedron of an earlier answer, is tried first, then a walk from it towards the point across
-// faces (O. Devillers, S. Pion, M. Teillaud, "Walking in a triangulation", 2002), for a bounded number
-// of steps.
+// A hint, the tetrahedron of an earlier answer, is tried first, or one from a grid of bricks (E. P. Muecke,
+// I. Saias, B. Zhu, "Fast randomized point location without preprocessing", 1996, is where the idea of good
+// starts comes from), then a walk from it towards the point across faces (O. Devillers, S. Pion, M. Teillaud,
+// "Walking in a triangulation", 2002), for a bounded number of steps.
 #include "format/locate.h"
 
 #include "base/exact.h"
 #include "format/frame.h"
+#include "format/round.h"
 
 #include <math.h>
 
 #define WALK_STEPS_MAX 24
+#define HINT_STEPS_MAX 8 // where bricks have another start
 #define BRANCHES_MAX \
     64 // cut planes of one tetrahedron that go through the point; more are not followed twice
+
+/// A determinant of four points of the finer grid is not off by more (base/exact.c).
+#define SURE 0x1p115
 
 typedef struct query {
     const enf_file_view *view;
@@ -32,22 +38,48 @@ static void load_point(const query *query, int32_t point, double out[3]) {
     for (int a = 0; a < 3; a++) out[a] = from[a] * scale;
 }
 
-/// How the point lies to the face opposite to corner `face`: +1 inside.
-static int face_side(const query *query, int32_t tetrahedron, int face) {
+/// As load_point, seen from the point that is asked for.
+static void load_relative(const query *query, int32_t point, double out[3]) {
+    const double *from = query->view->points[point], scale = query->view->frame->locate_scale;
+    for (int a = 0; a < 3; a++) out[a] = from[a] * scale - query->at[a];
+}
+
+/// How the point lies to the plane through three others, by the volume that they span as seen from it if that
+/// leaves no doubt.
+static int side_of(const query *query, const int32_t through[3], double volume) {
+    if (fabs(volume) > SURE) return volume < 0 ? 1 : -1;
     double a[3], b[3], c[3];
-    const int32_t *corners = query->view->tetrahedra[tetrahedron];
-    load_point(query, corners[face_corner[face][0]], a);
-    load_point(query, corners[face_corner[face][1]], b);
-    load_point(query, corners[face_corner[face][2]], c);
+    load_point(query, through[0], a);
+    load_point(query, through[1], b);
+    load_point(query, through[2], c);
     return enf_points_orient(a, b, c, query->at);
 }
 
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 /// +1 strictly inside the tetrahedron, 0 on its boundary, -1 outside. *away: a face that has the point
-/// outside.
-static int tetrahedron_side(const query *query, int32_t tetrahedron, int *away) {
+/// outside. `behind`: a face that is known to have it inside; -1: none.
+static int tetrahedron_side(const query *query, int32_t tetrahedron, int behind, int *away) {
+    const int32_t *corners = query->view->tetrahedra[tetrahedron];
+    double at[4][3], one[3], other[3];
     int least = 1;
+    for (int k = 0; k < 4; k++) load_relative(query, corners[k], at[k]);
+    cross(at[2], at[3], one);
+    cross(at[0], at[1], other);
+    const double volume[4] = {-dot(at[1], one), dot(at[0], one), -dot(at[3], other), dot(at[2], other)};
     for (int face = 0; face < 4; face++) {
-        int side = face_side(query, tetrahedron, face);
+        const int *pick = face_corner[face];
+        if (face == behind) continue;
+        const int32_t through[3] = {corners[pick[0]], corners[pick[1]], corners[pick[2]]};
+        int side = side_of(query, through, volume[face]);
         if (side < 0) {
             *away = face;
             return -1;
@@ -59,20 +91,22 @@ static int tetrahedron_side(const query *query, int32_t tetrahedron, int *away) 
 
 static int plane_side(const query *query, int32_t plane) {
     const int32_t *through = query->view->planes[plane];
-    double a[3], b[3], c[3];
+    double a[3], b[3], c[3], across[3];
+    if (through[2] >= 0) {
+        load_relative(query, through[0], a);
+        load_relative(query, through[1], b);
+        load_relative(query, through[2], c);
+        cross(b, c, across);
+        return side_of(query, through, dot(a, across));
+    }
+    // One step of the finer grid along the axis, or against it at the very edge of the range.
+    int axis = -1 - through[2];
     load_point(query, through[0], a);
     load_point(query, through[1], b);
-    if (through[2] >= 0) {
-        load_point(query, through[2], c);
-    } else {
-        // One step of the finer grid along the axis, or against it at the very edge of the range.
-        int axis = -1 - through[2];
-        for (int i = 0; i < 3; i++) c[i] = a[i];
-        double step = a[axis] < 0 ? 1 : -1;
-        c[axis] += step;
-        return enf_points_orient(a, b, c, query->at) * (int)step;
-    }
-    return enf_points_orient(a, b, c, query->at);
+    for (int i = 0; i < 3; i++) c[i] = a[i];
+    double step = a[axis] < 0 ? 1 : -1;
+    c[axis] += step;
+    return enf_points_orient(a, b, c, query->at) * (int)step;
 }
 
 /// Cells before discarded space, then the lower number.
@@ -108,21 +142,48 @@ static bool descend(query *query, int32_t tetrahedron) {
     return single;
 }
 
-/// The walk from a hint. True if it ended strictly inside a fine cell; otherwise nothing has been found.
-static bool walk(query *query, int32_t hint) {
+/// The face of a tetrahedron that another one lies behind; -1: none.
+static int face_to(const enf_file_view *view, int32_t tetrahedron, int32_t other) {
+    const int32_t *next = view->tetrahedron_next[tetrahedron];
+    for (int face = 0; face < 4; face++)
+        if (next[face] == other) return face;
+    return -1;
+}
+
+typedef enum outcome { FOUND, ON_BORDER, LOST } outcome;
+
+/// The walk from a hint. FOUND if it ended strictly inside a fine cell; otherwise nothing has been found.
+static outcome walk(query *query, int32_t hint, int steps) {
     const enf_file_view *view = query->view;
     int32_t tetrahedron = hint;
-    for (int step = 0; step < WALK_STEPS_MAX && tetrahedron >= 0; step++) {
-        int away = 0, side = tetrahedron_side(query, tetrahedron, &away);
+    int behind = -1;
+    for (int step = 0; step < steps && tetrahedron >= 0; step++) {
+        int away = 0, side = tetrahedron_side(query, tetrahedron, behind, &away);
         if (side > 0) {
-            if (descend(query, tetrahedron)) return true;
+            if (descend(query, tetrahedron)) return FOUND;
             query->best = -1;
-            return false;
+            return ON_BORDER;
         }
-        if (side == 0) return false;
-        tetrahedron = view->tetrahedron_next[tetrahedron][away];
+        if (side == 0) return ON_BORDER;
+        int32_t next = view->tetrahedron_next[tetrahedron][away];
+        behind = next >= 0 ? face_to(view, next, tetrahedron) : -1;
+        tetrahedron = next;
     }
-    return false;
+    return LOST;
+}
+
+/// A tetrahedron not far from the point; -1: unknown.
+static int32_t find_start(const query *query) {
+    const enf_file_view *view = query->view;
+    const enf_file_start *start = view->start;
+    if (!start) return -1;
+    int64_t brick = 0;
+    for (int a = 0; a < 3; a++) {
+        double along = (query->at[a] / view->frame->locate_scale - start->origin[a]) * start->per_step[a];
+        int32_t last = start->count[a] - 1;
+        brick = brick * start->count[a] + (!(along > 0) ? 0 : along < last ? (int32_t)along : last);
+    }
+    return view->start_tetrahedra[brick];
 }
 
 static bool box_holds(const enf_file_box *box, const double at[3]) {
@@ -142,7 +203,7 @@ static void search(query *query) {
         }
         i++;
         if (box->tetrahedron < 0) continue;
-        int away, side = tetrahedron_side(query, box->tetrahedron, &away);
+        int away, side = tetrahedron_side(query, box->tetrahedron, -1, &away);
         if (side >= 0) descend(query, box->tetrahedron);
         if (side > 0) return;
     }
@@ -230,10 +291,14 @@ enf_place enf_view_locate_grid(const enf_file_view *view, const double grid[3], 
     for (int a = 0; a < 3; a++) {
         double scaled = grid[a] * view->frame->locate_scale;
         if (!(fabs(scaled) <= ENF_FILE_GRID_MAX)) return nowhere;
-        query.at[a] = nearbyint(scaled);
+        query.at[a] = enf_round(scaled);
     }
-    bool hinted = hint >= 0 && hint < view->tetrahedron_count && walk(&query, hint);
-    if (!hinted) search(&query);
+    outcome outcome = LOST;
+    if (hint >= 0 && hint < view->tetrahedron_count)
+        outcome = walk(&query, hint, view->start ? HINT_STEPS_MAX : WALK_STEPS_MAX);
+    int32_t start = outcome == LOST ? find_start(&query) : -1;
+    if (start >= 0) outcome = walk(&query, start, WALK_STEPS_MAX);
+    if (outcome != FOUND) search(&query);
     if (query.best < 0) search_nearest(&query);
     if (query.best < 0) return nowhere;
     int32_t region = view->fine_region[query.best];

@@ -19,6 +19,10 @@ _Static_assert(sizeof(enf_file_portal) == 48, "portal layout");
 _Static_assert(sizeof(enf_file_portal_polygon) == 56, "portal polygon layout");
 _Static_assert(sizeof(enf_file_box) == 32, "box layout");
 _Static_assert(sizeof(enf_file_triangle) == 56, "triangle layout");
+_Static_assert(sizeof(enf_file_start) == 64, "start layout");
+_Static_assert(sizeof(enf_file_sight) == 56, "sight layout");
+_Static_assert(sizeof(enf_file_barrier) == 40, "barrier layout");
+_Static_assert(sizeof(enf_file_barrier_node) == 112, "barrier node layout");
 
 #define PARTS (ENF_PART_NEEDED + 1)
 

@@ -27,6 +27,8 @@ const enf_section_spec enf_section_specs[] = {
     SECTION("CELLPORT", CORE,     CELL_PORTALS,       0, INDEX,     PORTALS,       0, cell_portals),
 
     SECTION("BOX",      CORE,     BOXES,              0, NONE,      NONE,          0, boxes),
+    SECTION("BRICKS",   START,    NONE,               0, NONE,      NONE,          0, start),
+    SECTION("BRICKTET", START,    STARTS,             0, INDEX,     TETRAHEDRA,   -1, start_tetrahedra),
     SECTION("POINT",    CORE,     POINTS,             0, GRID,      NONE,          0, points),
     SECTION("PLANE",    CORE,     PLANES,             0, NONE,      NONE,          0, planes),
     SECTION("TET",      CORE,     TETRAHEDRA,         0, INDEX,     POINTS,        0, tetrahedra),
@@ -48,6 +50,12 @@ const enf_section_spec enf_section_specs[] = {
     SECTION("PVS",      PVS,      NONE,               0, NONE,      NONE,          0, pvs),
     SECTION("PVSOFF",   PVS,      CELLS,              1, OFFSETS64, PVS_BYTES,     0, pvs_offset),
     SECTION("PVSROW",   PVS,      PVS_BYTES,          0, NONE,      NONE,          0, pvs_rows),
+
+    SECTION("SIGHT",    SIGHT,    NONE,               0, NONE,      NONE,          0, sight),
+    SECTION("BARRIER",  SIGHT,    BARRIERS,           0, NONE,      NONE,          0, barriers),
+    SECTION("BARRVERT", SIGHT,    BARRIER_VERTICES,   0, GRID,      NONE,          0, barrier_vertices),
+    SECTION("WALLTREE", SIGHT,    WALL_NODES,         0, NONE,      NONE,          0, wall_nodes),
+    SECTION("PORTTREE", SIGHT,    PORTAL_NODES,       0, NONE,      NONE,          0, portal_nodes),
 
     SECTION("VXPLANE",  EXACT,    VERTICES,           0, INDEX,     PLANES,       -1, vertex_planes),
     SECTION("VXPOS",    EXACT,    VERTICES,           0, GRID,      NONE,          0, vertex_position),
@@ -124,6 +132,11 @@ static const struct {
     [ENF_DIMENSION_GROUPS] = COUNT(group_count),
     [ENF_DIMENSION_MATERIALS] = COUNT(material_count),
     [ENF_DIMENSION_PVS_BYTES] = COUNT(pvs_byte_count),
+    [ENF_DIMENSION_STARTS] = COUNT(start_count),
+    [ENF_DIMENSION_BARRIERS] = COUNT(barrier_count),
+    [ENF_DIMENSION_BARRIER_VERTICES] = COUNT(barrier_vertex_count),
+    [ENF_DIMENSION_WALL_NODES] = COUNT(wall_node_count),
+    [ENF_DIMENSION_PORTAL_NODES] = COUNT(portal_node_count),
 };
 
 int64_t enf_view_count(const enf_file_view *view, enf_dimension dimension) {

@@ -193,8 +193,11 @@ static enf_status check_regions(checker *check) {
     return ENF_OK;
 }
 
+/// Ranges that are longer together than what they point into share parts of it: a small file could make
+/// every walk over them as long as it likes.
 static enf_status check_cells(checker *check) {
     const enf_file_view *view = check->view;
+    int64_t portals = 0, triangles = 0;
     for (int32_t i = 0; i < view->cell_count; i++) {
         const enf_file_cell *cell = &view->cells[i];
         bool good = all_finite(cell->box_min, 3) && all_finite(cell->box_max, 3) && isfinite(cell->volume) &&
@@ -204,6 +207,9 @@ static enf_status check_cells(checker *check) {
                      is_range(cell->triangle_first, cell->triangle_count, view->cell_triangle_count));
         for (int32_t k = 0; good && k < cell->portal_count; k++)
             good = view->portals[view->cell_portals[cell->portal_first + k]].from == i;
+        if (good) portals += cell->portal_count;
+        if (good && view->has_geometry) triangles += cell->triangle_count;
+        good = good && portals <= view->cell_portal_count && triangles <= view->cell_triangle_count;
         if (!good) return element_fails(check->error, "CELL", i);
     }
     return ENF_OK;
@@ -211,20 +217,23 @@ static enf_status check_cells(checker *check) {
 
 static enf_status check_portals(checker *check) {
     const enf_file_view *view = check->view;
+    int64_t polygons = 0, vertices = 0;
     if (view->portal_count % 2) return element_fails(check->error, "PORTAL", view->portal_count);
     for (int32_t i = 0; i < view->portal_count; i++) {
         const enf_file_portal *portal = &view->portals[i], *twin = &view->portals[i ^ 1];
         if (!in_range(portal->from, 0, view->cell_count) || twin->to != portal->from ||
             portal->polygon_count < 1 || portal->polygon_count != twin->polygon_count ||
             !is_range(portal->polygon_first, portal->polygon_count, view->portal_polygon_count) ||
-            !all_finite(portal->centre, 3) || !isfinite(portal->radius) || portal->radius < 0)
+            !all_finite(portal->centre, 3) || !isfinite(portal->radius) || portal->radius < 0 ||
+            (polygons += portal->polygon_count) > view->portal_polygon_count)
             return element_fails(check->error, "PORTAL", i);
     }
     for (int32_t i = 0; i < view->portal_polygon_count; i++) {
         const enf_file_portal_polygon *polygon = &view->portal_polygons[i];
         if (!all_finite(polygon->plane, 4) || !isfinite(polygon->area) || polygon->vertex_count < 3 ||
             !is_range(polygon->vertex_first, polygon->vertex_count, view->portal_vertex_count) ||
-            (view->has_exact && !in_range(polygon->loop, 0, view->portal_loop_count)))
+            (view->has_exact && !in_range(polygon->loop, 0, view->portal_loop_count)) ||
+            (vertices += polygon->vertex_count) > view->portal_vertex_count)
             return element_fails(check->error, "PORTPOLY", i);
     }
     return ENF_OK;
@@ -254,6 +263,19 @@ static enf_status check_boxes(checker *check) {
         if (!good) return element_fails(check->error, "BOX", i);
     }
     return ENF_OK;
+}
+
+static enf_status check_start(checker *check) {
+    const enf_file_start *start = check->view->start;
+    if (!start) return ENF_OK;
+    int64_t bricks = 1;
+    bool good = all_finite(start->origin, 3) && all_finite(start->per_step, 3);
+    for (int a = 0; a < 3 && good; a++) {
+        good = start->per_step[a] >= 0 && start->count[a] >= 1;
+        if (good) bricks *= start->count[a]; // at most 2^31 before, so this does not overflow
+        good = good && bricks <= check->view->start_count;
+    }
+    return good && bricks == check->view->start_count ? ENF_OK : element_fails(check->error, "BRICKS", 0);
 }
 
 /// Notes a reference from a root or node. Where a node is referred to by roots only, or by one other node
@@ -339,6 +361,59 @@ static enf_status check_pvs(checker *check) {
     return ENF_OK;
 }
 
+static bool barrier_fits(const enf_file_view *view, const enf_file_barrier *barrier) {
+    bool is_portal = barrier->kind == ENF_FILE_BARRIER_PORTAL;
+    int32_t end = is_portal ? view->portal_count : view->has_geometry ? view->triangle_count : INT32_MAX;
+    return in_range(barrier->kind, 0, ENF_FILE_BARRIER_KINDS) && all_finite(barrier->normal, 3) &&
+           barrier->vertex_count >= 3 &&
+           is_range(barrier->vertex_first, barrier->vertex_count, view->barrier_vertex_count) &&
+           in_range(barrier->index, is_portal ? 0 : -1, end) && !(is_portal && barrier->index % 2);
+}
+
+/// Nodes are referred to once each, level by level, so every walk is one of a tree that is not too deep; and
+/// the corners of all barriers in it, counted as often as they are in it, are no more than there are.
+static enf_status check_barrier_tree(checker *check, const char *tag, const enf_file_barrier_node *nodes,
+                                     int32_t count, int64_t *vertices) {
+    int32_t next = 1, level_end = 1, levels = 1;
+    for (int32_t i = 0; i < count; i++) {
+        if (i == level_end) {
+            level_end = next;
+            levels++;
+        }
+        for (int k = 0; k < 4; k++) {
+            int32_t child = nodes[i].child[k];
+            bool good = child < 0 ? child == -1 || -2 - child < check->view->barrier_count : child == next;
+            if (!good) return element_fails(check->error, tag, i);
+            next += child >= 0;
+            if (child < -1) *vertices += check->view->barriers[-2 - child].vertex_count;
+            if (*vertices > check->view->barrier_vertex_count) return element_fails(check->error, tag, i);
+        }
+        if (next <= i + 1 && i + 1 < count)
+            return element_fails(check->error, tag, i); // the rest hangs loose
+    }
+    if ((count && next != count) || levels > ENF_FILE_BARRIER_DEPTH_MAX)
+        return element_fails(check->error, tag, count);
+    return ENF_OK;
+}
+
+static enf_status check_sight(checker *check) {
+    const enf_file_view *view = check->view;
+    if (!view->sight) return ENF_OK;
+    const enf_file_sight *sight = view->sight;
+    bool good = sight->extent >= 1 && sight->extent <= ENF_FILE_GRID_MAX;
+    for (int a = 0; a < 3; a++)
+        good = good && fabs(sight->box_min[a]) <= sight->extent && fabs(sight->box_max[a]) <= sight->extent;
+    if (!good) return element_fails(check->error, "SIGHT", 0);
+    for (int32_t i = 0; i < view->barrier_count; i++) {
+        if (!barrier_fits(view, &view->barriers[i])) return element_fails(check->error, "BARRIER", i);
+    }
+    int64_t vertices = 0;
+    enf_status status =
+        check_barrier_tree(check, "WALLTREE", view->wall_nodes, view->wall_node_count, &vertices);
+    if (status) return status;
+    return check_barrier_tree(check, "PORTTREE", view->portal_nodes, view->portal_node_count, &vertices);
+}
+
 enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
     for (int i = 0; i < enf_section_spec_count; i++) {
         const enf_section_spec *spec = &enf_section_specs[i];
@@ -347,8 +422,8 @@ enf_status enf_view_check(const enf_file_view *view, enf_error *error) {
         if (bad >= 0) return element_fails(error, spec->tag, bad);
     }
     static enf_status (*const checks[])(checker *) = {
-        check_head,  check_regions,   check_portals, check_cells,    check_planes,
-        check_boxes, check_cut_trees, check_exact,   check_geometry, check_pvs};
+        check_head,  check_regions,   check_portals, check_cells,    check_planes, check_boxes,
+        check_start, check_cut_trees, check_exact,   check_geometry, check_pvs,    check_sight};
     checker check = {view, error};
     for (size_t i = 0; i < sizeof checks / sizeof *checks; i++) {
         enf_status status = checks[i](&check);

@@ -26,6 +26,10 @@ struct enf_instance {
     const enf_file_view *view;
     door *doors;            ///< per pair of portals
     transform **transforms; ///< per portal; null: never had one. Null if none ever had
+    _Atomic bool touched;   ///< some door was set
+    int32_t *moving;        ///< the portals with a transform, ascending
+    int32_t moving_count;
+    _Atomic int32_t shut; ///< doors closed
 };
 
 enf_status enf_instance_create(enf_instance **out, const enf_world *world,
@@ -40,7 +44,8 @@ enf_status enf_instance_create(enf_instance **out, const enf_world *world,
         free(doors);
         return enf_fail_memory(error, "an instance");
     }
-    *instance = (enf_instance){.view = view, .doors = doors};
+    instance->view = view;
+    instance->doors = doors;
     *out = instance;
     return ENF_OK;
 }
@@ -50,6 +55,7 @@ void enf_instance_free(enf_instance *instance) {
     for (int32_t i = 0; instance->transforms && i < instance->view->portal_count; i++)
         free(instance->transforms[i]);
     free(instance->transforms);
+    free(instance->moving);
     free(instance->doors);
     free(instance);
 }
@@ -77,12 +83,17 @@ enf_status enf_instance_set_door(enf_instance *instance, int32_t portal, const e
     if (partly && (!is_finite(plane, 4) || (plane[0] == 0 && plane[1] == 0 && plane[2] == 0)))
         return enf_fail(error, ENF_BAD_USAGE, "a door that is partly open needs a plane with a direction");
     door *door = &instance->doors[portal / 2];
+    atomic_store_explicit(&instance->touched, true, memory_order_release);
+    int change = (set->state == ENF_DOOR_CLOSED) -
+                 (atomic_load_explicit(&door->state, memory_order_relaxed) == ENF_DOOR_CLOSED);
+    if (change > 0) atomic_fetch_add_explicit(&instance->shut, 1, memory_order_release);
     uint32_t version = atomic_load_explicit(&door->version, memory_order_relaxed);
     atomic_store_explicit(&door->version, version + 1, memory_order_relaxed);
     atomic_store_explicit(&door->state, (uint32_t)set->state, memory_order_release);
     for (int i = 0; i < 4; i++)
         atomic_store_explicit(&door->plane[i], partly ? plane[i] : 0, memory_order_release);
     atomic_store_explicit(&door->version, version + 2, memory_order_release);
+    if (change < 0) atomic_fetch_sub_explicit(&instance->shut, 1, memory_order_release);
     return ENF_OK;
 }
 
@@ -109,12 +120,42 @@ static double determinant(const double m[12]) {
            m[2] * (m[4] * m[9] - m[5] * m[8]);
 }
 
+/// Takes a portal into the list of those that transform, or out of it.
+static void note_transform(enf_instance *instance, int32_t portal, bool used) {
+    int32_t at = 0, *list = instance->moving;
+    while (at < instance->moving_count && list[at] < portal) at++;
+    bool listed = at < instance->moving_count && list[at] == portal;
+    size_t behind = (size_t)(instance->moving_count - at);
+    if (used && !listed) {
+        memmove(list + at + 1, list + at, behind * sizeof *list);
+        list[at] = portal;
+        instance->moving_count++;
+    } else if (!used && listed) {
+        memmove(list + at, list + at + 1, (behind - 1) * sizeof *list);
+        instance->moving_count--;
+    }
+}
+
+/// Memory for a transform of a portal, and for the lists.
+static bool reserve_transform(enf_instance *instance, int32_t portal) {
+    size_t count = (size_t)instance->view->portal_count;
+    if (!instance->transforms) instance->transforms = calloc(count, sizeof *instance->transforms);
+    if (!instance->moving) instance->moving = malloc(count * sizeof *instance->moving);
+    if (!instance->transforms || !instance->moving) return false;
+    transform **place = &instance->transforms[portal];
+    if (!*place) *place = calloc(1, sizeof **place);
+    return *place != NULL;
+}
+
 enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, int32_t to,
                                       const double matrix[12], enf_error *error) {
     enf_status status = check_portal(instance, portal, error);
     if (status) return status;
     if (!matrix) {
-        if (instance->transforms && instance->transforms[portal]) instance->transforms[portal]->used = false;
+        if (instance->transforms && instance->transforms[portal]) {
+            instance->transforms[portal]->used = false;
+            note_transform(instance, portal, false);
+        }
         return ENF_OK;
     }
     if (to < 0 || to >= instance->view->cell_count)
@@ -123,20 +164,34 @@ enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, in
     double volume = is_finite(matrix, 12) ? determinant(matrix) : 0;
     if (volume == 0 || !isfinite(volume))
         return enf_fail(error, ENF_BAD_USAGE, "a transform must be finite and have an inverse");
-    if (!instance->transforms)
-        instance->transforms = calloc((size_t)instance->view->portal_count, sizeof *instance->transforms);
-    if (!instance->transforms) return enf_fail_memory(error, "a transform");
-    transform **place = &instance->transforms[portal];
-    if (!*place) *place = malloc(sizeof **place);
-    if (!*place) return enf_fail_memory(error, "a transform");
-    (*place)->to = to;
-    (*place)->used = true;
-    memcpy((*place)->matrix, matrix, sizeof(*place)->matrix);
+    if (!reserve_transform(instance, portal)) return enf_fail_memory(error, "a transform");
+    transform *place = instance->transforms[portal];
+    place->to = to;
+    place->used = true;
+    memcpy(place->matrix, matrix, sizeof place->matrix);
+    note_transform(instance, portal, true);
     return ENF_OK;
 }
 
-enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal) {
+bool enf_instance_is_changed(const enf_instance *instance) {
+    return instance &&
+           (instance->transforms || atomic_load_explicit(&instance->touched, memory_order_acquire));
+}
+
+bool enf_instance_pair_is_changed(const enf_instance *instance, int32_t portal) {
+    int32_t pair = portal / 2;
+    if (atomic_load_explicit(&instance->doors[pair].version, memory_order_relaxed) != 0 &&
+        read_door(&instance->doors[pair]).state != ENF_DOOR_OPEN)
+        return true;
+    for (int32_t i = 2 * pair; instance->transforms && i < 2 * pair + 2; i++)
+        if (instance->transforms[i] && instance->transforms[i]->used) return true;
+    return false;
+}
+
+enf_passage enf_instance_lead(const enf_instance *instance, const enf_file_view *view, int32_t portal,
+                              bool *is_shut) {
     enf_passage passage = {.to = view->portals[portal].to};
+    *is_shut = false;
     if (!instance) return passage;
     const transform *transform = instance->transforms ? instance->transforms[portal] : NULL;
     if (transform && transform->used) {
@@ -146,8 +201,24 @@ enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_vi
     const door *door = &instance->doors[portal / 2];
     if (atomic_load_explicit(&door->version, memory_order_relaxed) == 0) return passage; // never touched
     enf_door now = read_door(door);
-    if (now.state == ENF_DOOR_CLOSED) passage.to = -1;
+    *is_shut = now.state == ENF_DOOR_CLOSED;
     passage.cut = now.state == ENF_DOOR_PARTLY;
     memcpy(passage.plane, now.plane, sizeof passage.plane);
     return passage;
+}
+
+enf_passage enf_instance_passage(const enf_instance *instance, const enf_file_view *view, int32_t portal) {
+    bool is_shut;
+    enf_passage passage = enf_instance_lead(instance, view, portal, &is_shut);
+    if (is_shut) passage.to = -1;
+    return passage;
+}
+
+bool enf_instance_has_shut(const enf_instance *instance) {
+    return instance && atomic_load_explicit(&instance->shut, memory_order_acquire) > 0;
+}
+
+int32_t enf_instance_transforms(const enf_instance *instance, const int32_t **portals) {
+    *portals = instance ? instance->moving : NULL;
+    return instance ? instance->moving_count : 0;
 }

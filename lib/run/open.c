@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Opening and closing: a mapped file, or one that already lies in memory.
-#include "enfilade/run.h"
+#include "run/open.h"
 
 #include "format/locate.h"
 #include "format/read.h"
@@ -101,6 +101,10 @@ void enf_world_close(enf_world *world) {
     if (!world) return;
     if (world->mapping) munmap(world->mapping, world->mapping_size);
     free(world);
+}
+
+bool enf_world_is_mapped(const enf_world *world) {
+    return world->mapping != NULL;
 }
 
 const enf_file_view *enf_world_file(const enf_world *world) {

@@ -12,7 +12,7 @@
 
 #define ENF_FILE_MAGIC "ENFILADE"            ///< 8 bytes, no terminating zero in the file
 #define ENF_FILE_MAJOR 2                     ///< a reader refuses another major version
-#define ENF_FILE_MINOR 1                     ///< a reader accepts any minor version of its major one
+#define ENF_FILE_MINOR 2                     ///< a reader accepts any minor version of its major one
 #define ENF_FILE_ALIGNMENT 16                ///< sections begin at multiples of this
 #define ENF_FILE_GRID_MAX 9007199254740992.0 ///< 2^53: no grid coordinate is larger in magnitude
 
@@ -151,6 +151,49 @@ typedef struct enf_file_box {
     int32_t tetrahedron;  ///< -1: not a leaf
 } enf_file_box;
 
+/// A box of equal bricks, count[0] * count[1] * count[2] of them; the last axis runs fastest. Each knows a
+/// tetrahedron from which it is not far to the points in it.
+typedef struct enf_file_start {
+    double origin[3];   ///< grid steps
+    double per_step[3]; ///< bricks per grid step, >= 0
+    int32_t count[3];   ///< at least 1 each
+    int32_t reserved;   ///< 0
+} enf_file_start;
+
+/// The fine grid: what lines of sight and barriers are decided on, exactly. Its coordinates are whole numbers
+/// of grid steps / frame->locate_scale, at most 2^53 in magnitude.
+typedef struct enf_file_sight {
+    double box_min[3], box_max[3]; ///< around all barriers and clean points, fine grid
+    double extent;                 ///< none of these is larger in magnitude; at least 1
+} enf_file_sight;
+
+/// What a line of sight may meet.
+typedef enum enf_file_barrier_kind {
+    ENF_FILE_BARRIER_WALL,   ///< a clean polygon at a cell; index: its first triangle, or -1
+    ENF_FILE_BARRIER_DETAIL, ///< a triangle that is drawn, but does not cut; index: the triangle
+    ENF_FILE_BARRIER_CRACK,  ///< a sealed crack at a cell; index: -1
+    ENF_FILE_BARRIER_PORTAL, ///< a polygon of a portal; index: the even portal
+    ENF_FILE_BARRIER_KINDS
+} enf_file_barrier_kind;
+
+/// A convex polygon, counter-clockwise from its front. Flat, but for cracks and portals, whose corners are
+/// rounded.
+typedef struct enf_file_barrier {
+    double normal[3];                   ///< towards the front, length 1, rounded
+    int32_t vertex_first, vertex_count; ///< range of barrier_vertices, at least three
+    int32_t kind;                       ///< enf_file_barrier_kind
+    int32_t index;                      ///< of what it is: see the kinds
+} enf_file_barrier;
+
+/// A node of a tree of boxes around barriers, with up to four children. Nodes are stored breadth first: the
+/// inner children of all nodes, in order, are nodes 1, 2, 3 and so on.
+typedef struct enf_file_barrier_node {
+    float bound[3][2][4]; ///< fine grid: per axis the smallest and the largest coordinates of the children
+    int32_t child[4];     ///< >= 0: a node; -1: none; < -1: barrier -2 - child
+} enf_file_barrier_node;
+
+#define ENF_FILE_BARRIER_DEPTH_MAX 96 ///< levels of such a tree
+
 /// A triangle to draw, counter-clockwise from its front.
 typedef struct enf_file_triangle {
     int32_t point[3];     ///< render_points
@@ -217,6 +260,9 @@ typedef struct enf_file_view {
     const int32_t *fine_cell; ///< the cell it went into; -1: discarded
     int32_t box_count;
     const enf_file_box *boxes;
+    const enf_file_start *start; ///< null: there is none, nor start_tetrahedra
+    int32_t start_count;
+    const int32_t *start_tetrahedra; ///< per brick the tetrahedron that holds its middle, or -1
 
     // The exact complex (all or nothing); the arrays of enf_complex and enf_mesh, see there.
     bool has_exact;
@@ -267,6 +313,17 @@ typedef struct enf_file_view {
     const int64_t *pvs_offset; ///< cell_count + 1 offsets into pvs_rows
     int64_t pvs_byte_count;
     const uint8_t *pvs_rows; ///< per cell the cells it sees, coded: lib/format/layout.md
+
+    // Lines of sight (all or nothing), fine grid.
+    const enf_file_sight *sight; ///< null: there is none
+    int32_t barrier_count;
+    const enf_file_barrier *barriers;
+    int32_t barrier_vertex_count;
+    const double (*barrier_vertices)[3];
+    int32_t wall_node_count; ///< the tree of all barriers but portals
+    const enf_file_barrier_node *wall_nodes;
+    int32_t portal_node_count; ///< the tree of the portals' polygons
+    const enf_file_barrier_node *portal_nodes;
 
     // What is drawn (all or nothing), world coordinates.
     bool has_geometry;

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// The flood from the cell of a shape's centre through the portals that the shape meets. What has been reached
+// serves as the queue, so it comes out in breadth-first order. A cell takes a further image of the shape only
+// if none that it has holds it: what the smaller one reaches, the larger one does.
+#include "run/query.h"
+
+#include "run/instance.h"
+#include "run/shape.h"
+#include "run/take.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CELLS_MORE = 1024, IMAGES_DEFAULT = 64 };
+
+double enf_query_slack(const enf_query *query, const enf_shape *shape) {
+    double size = fmax(enf_shape_reach(shape), query->world_size);
+    for (int a = 0; a < 3; a++) size = fmax(size, fabs(shape->centre[a]));
+    return size * 0x1p-40;
+}
+
+static enf_status check_options(const enf_query_options *options, enf_error *error) {
+    if (options->cells_max >= 0 && options->images_max >= 0) return ENF_OK;
+    return enf_fail(error, ENF_BAD_USAGE, "a query object for %ld cells and %ld images; give numbers from 0",
+                    (long)options->cells_max, (long)options->images_max);
+}
+
+enf_status enf_query_create(enf_query **out, const enf_world *world, const enf_query_options *options,
+                            enf_error *error) {
+    static const enf_query_options defaults = {.size = sizeof defaults};
+    *out = NULL;
+    if (!options) options = &defaults;
+    enf_status status = check_options(options, error);
+    if (status) return status;
+    enf_query *query = calloc(1, sizeof *query);
+    if (!query) return enf_fail_memory(error, "a query object");
+    const enf_file_view *view = enf_world_file(world);
+    query->world = world;
+    query->view = view;
+    for (int a = 0; a < 3; a++)
+        query->world_size =
+            fmax(query->world_size, fmax(fabs(view->frame->box_min[a]), fabs(view->frame->box_max[a])));
+    int32_t most = view->cell_count < INT32_MAX - CELLS_MORE ? view->cell_count + CELLS_MORE : INT32_MAX;
+    query->flooded_max = options->cells_max ? options->cells_max : most;
+    query->images_max = options->images_max ? options->images_max : IMAGES_DEFAULT;
+    query->seen = enf_take((size_t)view->cell_count, sizeof *query->seen);
+    query->first = enf_take((size_t)view->cell_count, sizeof *query->first);
+    query->flooded = enf_take((size_t)query->flooded_max, sizeof *query->flooded);
+    query->images = enf_take((size_t)query->images_max, sizeof *query->images);
+    bool taken = query->seen && query->first && query->flooded && query->images;
+    if (!options->skip_triangles) {
+        query->triangle_seen = enf_take((size_t)view->triangle_count, sizeof *query->triangle_seen);
+        taken = taken && query->triangle_seen;
+    }
+    if (!taken) {
+        enf_query_free(query);
+        return enf_fail_memory(error, "a query object");
+    }
+    *out = query;
+    return ENF_OK;
+}
+
+void enf_query_free(enf_query *query) {
+    if (!query) return;
+    free(query->seen);
+    free(query->first);
+    free(query->flooded);
+    free(query->images);
+    free(query->triangle_seen);
+    free(query);
+}
+
+void enf_query_begin(enf_query *query) {
+    if (++query->mark) return;
+    memset(query->seen, 0, (size_t)query->view->cell_count * sizeof *query->seen);
+    query->mark = 1;
+}
+
+/// True if one of the images that have reached the cell holds the shape.
+static bool is_covered(const enf_query *query, int32_t cell, int32_t image) {
+    if (!enf_query_has(query, cell)) return false;
+    const enf_shape *shape = &query->images[image].shape;
+    for (int32_t i = query->first[cell]; i >= 0; i = query->flooded[i].next) {
+        int32_t other = query->flooded[i].image;
+        if (other == image || enf_shape_holds(&query->images[other].shape, shape)) return true;
+    }
+    return false;
+}
+
+static void reach(enf_query *query, int32_t cell, int32_t portal, int32_t image) {
+    if (is_covered(query, cell, image)) return;
+    if (query->flooded_count == query->flooded_max) {
+        query->complete = false;
+        return;
+    }
+    enf_flooded *flooded = &query->flooded[query->flooded_count];
+    *flooded = (enf_flooded){cell, portal, image, enf_query_has(query, cell) ? query->first[cell] : -1};
+    enf_query_mark(query, cell, query->flooded_count++);
+}
+
+/// outer * inner
+static void compose(const double outer[12], const double inner[12], double out[12]) {
+    for (int row = 0; row < 3; row++) {
+        const double *o = outer + 4 * row;
+        for (int column = 0; column < 4; column++)
+            out[4 * row + column] = o[0] * inner[column] + o[1] * inner[4 + column] +
+                                    o[2] * inner[8 + column] + (column == 3 ? o[3] : 0);
+    }
+}
+
+static void reach_transformed(enf_query *query, int32_t cell, int32_t portal, int32_t image,
+                              const double matrix[12]) {
+    if (query->image_count == query->images_max) {
+        query->complete = false;
+        return;
+    }
+    enf_image *next = &query->images[query->image_count];
+    compose(matrix, query->images[image].matrix, next->matrix);
+    next->shape = enf_shape_image(&query->images[0].shape, next->matrix);
+    if (!enf_shape_is_valid(&next->shape)) {
+        query->complete = false; // too large for doubles
+    } else if (!is_covered(query, cell, query->image_count)) {
+        reach(query, cell, portal, query->image_count++);
+    }
+}
+
+static bool meets_sphere(const enf_shape *shape, double reach, const enf_file_portal *portal, double slack) {
+    double square = 0, limit = reach + portal->radius + slack;
+    for (int a = 0; a < 3; a++) {
+        double away = shape->centre[a] - portal->centre[a];
+        square += away * away;
+    }
+    return !(square > limit * limit);
+}
+
+static bool meets_portal(const enf_file_view *view, const enf_shape *shape, const enf_file_portal *portal,
+                         const enf_passage *passage, double slack) {
+    for (int32_t i = 0; i < portal->polygon_count; i++) {
+        const enf_file_portal_polygon *polygon = &view->portal_polygons[portal->polygon_first + i];
+        enf_face face = {.vertices = view->portal_vertices + polygon->vertex_first,
+                         .count = polygon->vertex_count,
+                         .normal = {polygon->plane[0], polygon->plane[1], polygon->plane[2]},
+                         .cut = passage->cut ? passage->plane : NULL};
+        if (enf_shape_meets_face(shape, &face, slack)) return true;
+    }
+    return false;
+}
+
+static void cross_portals(enf_query *query, const enf_instance *instance, enf_flooded from) {
+    const enf_file_view *view = query->view;
+    const enf_shape *shape = &query->images[from.image].shape;
+    const enf_file_cell *cell = &view->cells[from.cell];
+    const double size = enf_shape_reach(shape), slack = enf_query_slack(query, shape);
+    for (int32_t i = 0; i < cell->portal_count; i++) {
+        int32_t number = view->cell_portals[cell->portal_first + i];
+        const enf_file_portal *portal = &view->portals[number];
+        if (!meets_sphere(shape, size, portal, slack)) continue;
+        enf_passage passage = enf_instance_passage(instance, view, number);
+        if (passage.to < 0 || (!passage.matrix && is_covered(query, passage.to, from.image))) continue;
+        if (!meets_portal(view, shape, portal, &passage, slack)) continue;
+        if (passage.matrix)
+            reach_transformed(query, passage.to, number, from.image, passage.matrix);
+        else
+            reach(query, passage.to, number, from.image);
+    }
+}
+
+void enf_query_flood(enf_query *query, const enf_instance *instance, int32_t start, const enf_shape *shape) {
+    enf_query_begin(query);
+    query->flooded_count = query->image_count = 0;
+    query->complete = true;
+    if (start < 0) return;
+    query->images[query->image_count++] = (enf_image){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, *shape};
+    reach(query, start, -1, 0);
+    for (int32_t i = 0; i < query->flooded_count; i++) cross_portals(query, instance, query->flooded[i]);
+}
+
+enf_status enf_query_cells(enf_query *query, const enf_instance *instance, int32_t start,
+                           const enf_shape *shape, enf_reached *out, int32_t capacity, enf_reach *reach,
+                           enf_error *error) {
+    *reach = (enf_reach){0, 0, true};
+    query->flooded_count = query->image_count = 0;
+    if (!enf_shape_is_valid(shape))
+        return enf_fail(error, ENF_BAD_USAGE, "a shape must be finite, and its size must not be negative");
+    if (start < -1 || start >= query->view->cell_count)
+        return enf_fail(error, ENF_BAD_USAGE, "cell %ld: the world has cells 0 to %ld", (long)start,
+                        (long)query->view->cell_count - 1);
+    if (start < 0) start = enf_world_locate(query->world, shape->centre, -1).cell;
+    enf_shape own = {.kind = shape->kind};
+    memcpy(own.centre, shape->centre, sizeof own.centre);
+    if (own.kind == ENF_SHAPE_SPHERE) own.radius = shape->radius;
+    if (own.kind == ENF_SHAPE_BOX) memcpy(own.half, shape->half, sizeof own.half);
+    enf_query_flood(query, instance, start, &own);
+    for (int32_t i = 0; i < query->flooded_count && i < capacity; i++) {
+        const enf_flooded *flooded = &query->flooded[i];
+        out[i] = (enf_reached){flooded->cell, flooded->portal, flooded->image};
+    }
+    *reach = (enf_reach){query->flooded_count, query->image_count, query->complete};
+    return ENF_OK;
+}
+
+enf_image enf_query_image(const enf_query *query, int32_t image) {
+    return image >= 0 && image < query->image_count ? query->images[image] : (enf_image){0};
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "run/way.h"
+
+#include "run/crossings.h"
+#include "run/walk.h"
+
+bool enf_way_set(enf_way *way, const double from[3], const double to[3]) {
+    for (int a = 0; a < 3; a++) {
+        way->from[a] = from[a];
+        way->to[a] = to[a];
+    }
+    return enf_fine_point(way->view, from, way->segment.from) &&
+           enf_fine_point(way->view, to, way->segment.to);
+}
+
+void enf_way_point(const enf_way *way, double share, double point[3]) {
+    for (int a = 0; a < 3; a++) point[a] = way->from[a] + share * (way->to[a] - way->from[a]);
+}
+
+static bool is_shut(const enf_way *way, const enf_crossing *crossing, const enf_passage *passage) {
+    if (passage->to < 0 || (passage->matrix && way->transforms_stop)) return true;
+    if (!passage->cut) return false;
+    double point[3], height = passage->plane[3];
+    enf_way_point(way, crossing->share, point);
+    for (int a = 0; a < 3; a++) height += passage->plane[a] * point[a];
+    return !(height >= 0);
+}
+
+/// The first crossing that is shut; as many as there are if none is.
+static int32_t find_shut(const enf_way *way, const enf_crossings *crossings) {
+    int32_t i = 0;
+    for (; i < crossings->count; i++) {
+        if (crossings->list[i].touches) continue;
+        enf_passage passage = enf_instance_passage(way->instance, way->view, crossings->list[i].portal);
+        if (is_shut(way, &crossings->list[i], &passage)) break;
+    }
+    return i;
+}
+
+bool enf_way_meets_change(const enf_way *way) {
+    if (!enf_instance_is_changed(way->instance)) return false;
+    enf_walk walk;
+    enf_walk_begin(&walk, way->view, &way->segment, way->view->portal_nodes, way->view->portal_node_count);
+    int32_t number;
+    while ((number = enf_walk_next(&walk)) >= 0) {
+        const enf_file_barrier *barrier = &way->view->barriers[number];
+        enf_meeting meeting;
+        if (barrier->kind != ENF_FILE_BARRIER_PORTAL) continue;
+        if (!enf_instance_pair_is_changed(way->instance, barrier->index)) continue;
+        if (enf_segment_meets(way->view, &way->segment, barrier, &meeting)) return true;
+    }
+    return false;
+}
+
+static void note(enf_passed *passed, int32_t portal) {
+    if (passed->portals && passed->count < passed->capacity) passed->portals[passed->count] = portal;
+    if (passed->count < INT32_MAX) passed->count++;
+}
+
+static enf_way_end end_at(enf_way_outcome outcome, const enf_crossing *crossing) {
+    return (enf_way_end){.outcome = outcome, .share = crossing->share, .portal = crossing->portal};
+}
+
+/// Goes along the chain, up to the crossing that is shut.
+static enf_way_end follow_chain(const enf_way *way, const enf_crossings *crossings, const enf_chain *chain,
+                                int32_t shut, int32_t *cell, enf_passed *passed) {
+    bool may_change = enf_instance_is_changed(way->instance);
+    for (int32_t i = 0; i < chain->count && chain->links[i] < shut; i++) {
+        const enf_crossing *crossing = &crossings->list[chain->links[i]];
+        enf_way_end led = end_at(ENF_WAY_LED, crossing);
+        if (may_change) {
+            led.passage = enf_instance_passage(way->instance, way->view, crossing->portal);
+            if (is_shut(way, crossing, &led.passage)) return end_at(ENF_WAY_SHUT, crossing);
+        }
+        note(passed, crossing->portal);
+        if (led.passage.matrix) return led;
+        *cell = way->view->portals[crossing->portal].to;
+    }
+    if (shut < crossings->count) return end_at(ENF_WAY_SHUT, &crossings->list[shut]);
+    return (enf_way_end){.outcome = ENF_WAY_FREE, .portal = -1};
+}
+
+enf_way_end enf_way_pass(const enf_way *way, double end, int32_t *cell, int32_t goal, enf_passed *passed) {
+    enf_way_end ended = {.outcome = ENF_WAY_FREE, .portal = -1};
+    for (double begin = 0; begin < end && ended.outcome == ENF_WAY_FREE;) {
+        enf_crossings crossings;
+        enf_chain chain;
+        enf_crossings_find(&crossings, way->view, &way->segment, begin, end);
+        int32_t shut = crossings.count;
+        if (enf_instance_is_changed(way->instance)) shut = find_shut(way, &crossings);
+        bool last = shut == crossings.count && crossings.end >= end;
+        enf_chain_find(&chain, &crossings, way->view, *cell, last ? goal : -1);
+        ended = follow_chain(way, &crossings, &chain, shut, cell, passed);
+        if (!(crossings.end > begin)) break;
+        begin = crossings.end;
+    }
+    return ended;
+}
+
+enf_status enf_fail_sight(enf_error *error) {
+    return enf_fail(error, ENF_BAD_INPUT,
+                    "the world file has no part for lines of sight; compile the world again");
+}
+
+void enf_transform_point(const double matrix[12], const double point[3], double moved[3]) {
+    enf_transform_direction(matrix, point, moved);
+    for (int a = 0; a < 3; a++) moved[a] += matrix[4 * a + 3];
+}
+
+void enf_transform_direction(const double matrix[12], const double direction[3], double turned[3]) {
+    const double d[3] = {direction[0], direction[1], direction[2]};
+    for (int a = 0; a < 3; a++)
+        turned[a] = matrix[4 * a] * d[0] + matrix[4 * a + 1] * d[1] + matrix[4 * a + 2] * d[2];
+}
