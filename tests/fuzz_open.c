@@ -7,6 +7,7 @@
 #include "enfilade/prefetch.h"
 #include "enfilade/run.h"
 #include "enfilade/sight.h"
+#include "enfilade/sound.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -172,6 +173,38 @@ static void use_prefetch(const enf_world *world, const enf_file_view *file) {
     enf_prefetch_free(prefetch);
 }
 
+static void use_finder(enf_path_finder *finder, const enf_file_view *file) {
+    enum { ROOM = 32 };
+    for (int32_t i = 0; i < file->cell_count && i < 20; i++) {
+        int32_t portals[ROOM], to = file->cell_count - 1 - i, count;
+        double points[ROOM][3];
+        const double *ends[2] = {file->cells[i].box_min, file->cells[to].box_max};
+        enf_path_query query = {sizeof query, i, to, ends[0], ends[1], portals, ROOM, points, ROOM, 0, 0};
+        enf_path path;
+        if (enf_path_find(finder, NULL, &query, &path, NULL) == ENF_OK)
+            sink += path.length + path.line_length;
+        enf_near_cell near[ROOM];
+        if (enf_path_near(finder, NULL, i, ends[0], 1e9, near, ROOM, &count, NULL) == ENF_OK) sink += count;
+        enf_sound_query asked = {.size = sizeof asked, .source_cell = i, .listener_cell = to, .range = 1e9};
+        enf_sound_path ways[4];
+        enf_sound sound;
+        memcpy(asked.source, ends[0], sizeof asked.source);
+        memcpy(asked.listener, ends[1], sizeof asked.listener);
+        if (enf_sound_find(finder, NULL, &asked, ways, 4, &sound, NULL) == ENF_OK) sink += sound.count;
+    }
+}
+
+static void use_paths(const enf_world *world, const enf_file_view *file) {
+    enf_paths *paths;
+    enf_path_finder *finder = NULL;
+    enf_path_finder_options options = {sizeof options, 256};
+    if (enf_paths_create(&paths, world, NULL, NULL) == ENF_OK &&
+        enf_path_finder_create(&finder, paths, &options, NULL) == ENF_OK)
+        use_finder(finder, file);
+    enf_path_finder_free(finder);
+    enf_paths_free(paths);
+}
+
 static void use(const enf_world *world) {
     const enf_file_view *file = enf_world_file(world);
     enf_world_info info;
@@ -187,6 +220,7 @@ static void use(const enf_world *world) {
     use_locate(world, file);
     use_shapes(world, file);
     use_prefetch(world, file);
+    use_paths(world, file);
 }
 
 static void open_and_use(const uint8_t *bytes, size_t size, bool skip_checksums) {
