@@ -270,8 +270,8 @@ static int bench_world(const request *request, const char *path) {
 
 static void print_head(const request *request) {
     if (request->check)
-        printf("%-16s %8s %10s %10s %9s %7s %8s %8s %8s %8s %5s\n", "world", "cameras", "rays", "hits",
-               "backs", "lost", "elsewh.", "no cell", "no reg.", "bad cam.", "flags");
+        printf("%-16s %8s %10s %10s %9s %7s %8s %8s %8s %8s %8s %5s\n", "world", "cameras", "rays", "hits",
+               "backs", "lost", "unlisted", "elsewh.", "no cell", "no reg.", "bad cam.", "flags");
     else
         printf("%-14s %-12s %7s %7s %7s %7s %4s %7s %7s %7s %6s %7s %8s %7s %6s %5s\n", "world", "regions",
                "us", "next", "few", "next", "few", "visits", "cells", "hit", "ratio", "screens", "tri.",
