@@ -168,9 +168,8 @@ static void print_row(bench *b, const char *name) {
     printf(" %8.1f %8.1f %5.1f\n", near, sound, b->way_sum / PLACES);
 }
 
-static enf_status prepare(bench *b, double table_size, enf_error *error) {
-    enf_paths_options options = {.size = sizeof options,
-                                 .table_bytes_max = (uint64_t)(table_size * (1 << 20)) + 1};
+static enf_status prepare(bench *b, uint64_t table_size, enf_error *error) {
+    enf_paths_options options = {.size = sizeof options, .table_bytes_max = table_size};
     b->view = enf_world_file(b->world);
     double start = enf_timer_now();
     enf_status status = enf_paths_create(&b->table, b->world, &options, error);
@@ -195,7 +194,7 @@ static enf_status prepare(bench *b, double table_size, enf_error *error) {
     return status;
 }
 
-static int measure(const char *path, double table_size) {
+static int measure(const char *path, uint64_t table_size) {
     bench *b = calloc(1, sizeof *b);
     enf_error error = {ENF_OK, ""};
     if (!b) return cli_fail(&(enf_error){ENF_NO_RESOURCES, "out of memory"});
@@ -219,13 +218,14 @@ static int measure(const char *path, double table_size) {
 }
 
 int cli_bench_run_paths(int argc, char **argv) {
-    double table_size = 64;
+    uint64_t table_size = UINT64_C(64) << 20;
     cli_option options[] = {
-        {"--table", 0, CLI_LENGTH, &table_size, "MIB", "no larger table is made (default: 64)", NULL, false},
+        {"--table", 0, CLI_BYTES, &table_size, "BYTES", "no larger table is made (default: 64M)", NULL,
+         false},
         {0},
     };
     const cli_syntax syntax = {.command = "enfilade bench run paths",
-                               .usage = "WORLD.enf ... [--table MIB]",
+                               .usage = "WORLD.enf ... [--table BYTES]",
                                .summary = "Times paths, lines, near cells and sounds in compiled worlds.",
                                .options = options,
                                .operands_min = 1,

@@ -26,14 +26,15 @@ typedef struct setting {
 } setting;
 
 static const setting settings[] = {
-    {"rect", {.rectangles = true}},
-    {"rect, no pvs", {.rectangles = true, .without = ENF_VIEW_PVS}},
-    {"4", {.edges_max = 4}},
-    {"4, no pvs", {.edges_max = 4, .without = ENF_VIEW_PVS}},
-    {"8", {.edges_max = 8}},
-    {"8, no pvs", {.edges_max = 8, .without = ENF_VIEW_PVS}},
-    {"all", {.edges_max = ENF_VIEW_EDGES_MAX}},
-    {"all, no pvs", {.edges_max = ENF_VIEW_EDGES_MAX, .without = ENF_VIEW_PVS}},
+    {"rect", {.size = sizeof(enf_view_options), .rectangles = true}},
+    {"rect, no pvs", {.size = sizeof(enf_view_options), .rectangles = true, .without = ENF_VIEW_PVS}},
+    {"4", {.size = sizeof(enf_view_options), .edges_max = 4}},
+    {"4, no pvs", {.size = sizeof(enf_view_options), .edges_max = 4, .without = ENF_VIEW_PVS}},
+    {"8", {.size = sizeof(enf_view_options), .edges_max = 8}},
+    {"8, no pvs", {.size = sizeof(enf_view_options), .edges_max = 8, .without = ENF_VIEW_PVS}},
+    {"all", {.size = sizeof(enf_view_options), .edges_max = ENF_VIEW_EDGES_MAX}},
+    {"all, no pvs",
+     {.size = sizeof(enf_view_options), .edges_max = ENF_VIEW_EDGES_MAX, .without = ENF_VIEW_PVS}},
 };
 
 enum { SETTING_COUNT = sizeof settings / sizeof *settings };
@@ -270,8 +271,8 @@ static int bench_world(const request *request, const char *path) {
 
 static void print_head(const request *request) {
     if (request->check)
-        printf("%-16s %8s %10s %10s %9s %7s %8s %8s %8s %8s %5s\n", "world", "cameras", "rays", "hits",
-               "backs", "lost", "elsewh.", "no cell", "no reg.", "bad cam.", "flags");
+        printf("%-16s %8s %10s %10s %9s %7s %8s %8s %8s %8s %8s %5s\n", "world", "cameras", "rays", "hits",
+               "backs", "lost", "unlisted", "elsewh.", "no cell", "no reg.", "bad cam.", "flags");
     else
         printf("%-14s %-12s %7s %7s %7s %7s %4s %7s %7s %7s %6s %7s %8s %7s %6s %5s\n", "world", "regions",
                "us", "next", "few", "next", "few", "visits", "cells", "hit", "ratio", "screens", "tri.",

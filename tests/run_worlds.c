@@ -279,10 +279,13 @@ static void make_pvs(maker *m) {
     free(near);
 }
 
-static void drop_exact(enf_file_view *view) {
+/// Drops what knows the fixture's own cells and portals: the exact complex and the barriers of sight.
+static void drop_fixture(enf_file_view *view) {
     for (int i = 0; i < enf_section_spec_count; i++)
-        if (enf_section_specs[i].part == ENF_PART_EXACT)
+        if (enf_section_specs[i].part == ENF_PART_EXACT || enf_section_specs[i].part == ENF_PART_SIGHT)
             enf_view_set_array(view, &enf_section_specs[i], NULL);
+    view->barrier_count = view->barrier_vertex_count = 0;
+    view->wall_node_count = view->portal_node_count = 0;
     view->has_exact = false;
     enf_file_spawn *spawns = (enf_file_spawn *)(uintptr_t)view->spawns;
     for (int32_t i = 0; i < view->spawn_count; i++) spawns[i].cell = -1;
@@ -328,7 +331,7 @@ run_world run_world_grid(int side, bool turned, uint64_t seed) {
     int32_t count = number_cells(&m);
     m.openings = take(3 * (size_t)m.cube_count, sizeof *m.openings);
     visit_faces(&m, add_opening);
-    drop_exact(&m.image.view);
+    drop_fixture(&m.image.view);
     make_portals(&m);
     make_cells(&m, count);
     make_pvs(&m);

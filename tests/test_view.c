@@ -307,11 +307,11 @@ static void set_transforms(enf_instance *instance, const enf_file_view *view, ui
 // ---------------------------------------------------------------------------------------------------
 
 static const enf_view_options shapes[] = {
-    {.rectangles = true, .without = ENF_VIEW_PVS},
-    {.edges_max = 4, .without = ENF_VIEW_PVS},
-    {.without = ENF_VIEW_PVS, .every_region = true},
-    {.edges_max = 99, .regions_max = 1, .without = ENF_VIEW_PVS},
-    {.regions_max = 2, .without = ENF_VIEW_PVS, .every_region = true},
+    {.size = sizeof(enf_view_options), .rectangles = true, .without = ENF_VIEW_PVS},
+    {.size = sizeof(enf_view_options), .edges_max = 4, .without = ENF_VIEW_PVS},
+    {.size = sizeof(enf_view_options), .without = ENF_VIEW_PVS, .every_region = true},
+    {.size = sizeof(enf_view_options), .edges_max = 99, .regions_max = 1, .without = ENF_VIEW_PVS},
+    {.size = sizeof(enf_view_options), .regions_max = 2, .without = ENF_VIEW_PVS, .every_region = true},
 };
 
 enum { SHAPES = sizeof shapes / sizeof *shapes };
@@ -487,7 +487,8 @@ static void doors_hide(void **state) {
     uint64_t seed = 12;
     run_world world = run_world_grid(8, true, 6);
     const enf_file_view *file = enf_world_file(world.world);
-    const enf_view_options options = {.edges_max = 99, .every_region = true, .without = ENF_VIEW_PVS};
+    const enf_view_options options = {
+        .size = sizeof options, .edges_max = 99, .every_region = true, .without = ENF_VIEW_PVS};
     enf_instance *shut = NULL, *ajar = NULL;
     enf_view *view = NULL;
     int64_t tried = 0;
@@ -549,7 +550,7 @@ static void early_outs_lose_nothing(void **state) {
     (void)state;
     assert_int_equal(enf_view_create(&view, world.world, NULL, NULL), ENF_OK);
     for (size_t t = 0; t < sizeof tests / sizeof *tests; t++) {
-        enf_view_options options = {.without = tests[t]};
+        enf_view_options options = {.size = sizeof options, .without = tests[t]};
         enf_view *other = NULL;
         assert_int_equal(enf_view_create(&other, world.world, &options, NULL), ENF_OK);
         for (int n = 0; n < 60; n++) {
@@ -583,9 +584,12 @@ static void limits_are_reported(void **state) {
     enf_instance *instance = NULL;
     enf_view *views[6] = {0};
     const enf_view_options options[6] = {
-        {.transforms_max = 3}, {.transforms_max = -1},
-        {.visit_capacity = 2}, {.decide = refuse_all, .user = (void *)(uintptr_t)file},
-        {.pixels_min = 1e9},   {.outside = ENF_VIEW_OUTSIDE_ALL}};
+        {.size = sizeof(enf_view_options), .transforms_max = 3},
+        {.size = sizeof(enf_view_options), .transforms_max = -1},
+        {.size = sizeof(enf_view_options), .visit_capacity = 2},
+        {.size = sizeof(enf_view_options), .decide = refuse_all, .user = (void *)(uintptr_t)file},
+        {.size = sizeof(enf_view_options), .pixels_min = 1e9},
+        {.size = sizeof(enf_view_options), .outside = ENF_VIEW_OUTSIDE_ALL}};
     int deep = 0, overflows = 0;
     (void)state;
     assert_int_equal(enf_instance_create(&instance, world.world, NULL, NULL), ENF_OK);
@@ -630,13 +634,13 @@ static void limits_are_reported(void **state) {
 }
 
 static void nonsense_options_are_refused(void **state) {
-    const enf_view_options nonsense[] = {{.edges_max = 3},
-                                         {.edges_max = -1},
-                                         {.regions_max = -1},
-                                         {.visit_capacity = -1},
-                                         {.pixels_min = -1},
-                                         {.pixels_min = NAN},
-                                         {.outside = (enf_view_outside)9}};
+    const enf_view_options nonsense[] = {{.size = sizeof(enf_view_options), .edges_max = 3},
+                                         {.size = sizeof(enf_view_options), .edges_max = -1},
+                                         {.size = sizeof(enf_view_options), .regions_max = -1},
+                                         {.size = sizeof(enf_view_options), .visit_capacity = -1},
+                                         {.size = sizeof(enf_view_options), .pixels_min = -1},
+                                         {.size = sizeof(enf_view_options), .pixels_min = NAN},
+                                         {.size = sizeof(enf_view_options), .outside = (enf_view_outside)9}};
     run_world world = run_world_grid(2, false, 1);
     enf_view *view;
     (void)state;

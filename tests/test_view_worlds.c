@@ -20,8 +20,12 @@
 #include <cmocka.h>
 
 static const enf_view_options settings[] = {
-    {.rectangles = true}, {.edges_max = 4},          {.every_region = true},
-    {.edges_max = 99},    {.without = ENF_VIEW_PVS}, {.without = ENF_VIEW_FACING | ENF_VIEW_SPHERE},
+    {.size = sizeof(enf_view_options), .rectangles = true},
+    {.size = sizeof(enf_view_options), .edges_max = 4},
+    {.size = sizeof(enf_view_options), .every_region = true},
+    {.size = sizeof(enf_view_options), .edges_max = 99},
+    {.size = sizeof(enf_view_options), .without = ENF_VIEW_PVS},
+    {.size = sizeof(enf_view_options), .without = ENF_VIEW_FACING | ENF_VIEW_SPHERE},
 };
 
 enum { SETTINGS = sizeof settings / sizeof *settings };

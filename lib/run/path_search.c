@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A* on chains: P. E. Hart, N. J. Nilsson, B. Raphael, "A formal basis for the heuristic determination of
 // minimum cost paths", IEEE Transactions on Systems Science and Cybernetics 4 (1968). A node is a chain, its
-// cost that of the chain's first portal. The search goes from the goal back to the start, so that of equally
+// cost that of the chain's first portal. The bound is the straight length, or what landmarks say if that is
+// more (path_landmarks.h). The search goes from the goal back to the start, so that of equally
 // short paths the one whose first portal has the lowest number wins, then the second, and so on.
 //
 // Portals that transform have a direction and make the straight length no bound: with such, the search goes

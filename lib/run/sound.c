@@ -21,6 +21,8 @@ typedef struct hearing {
     const enf_sound_query *query;
     enf_path_goal source, listener;
     int64_t range; ///< units
+    bool is_plain; ///< no portal transforms, so no way to the listener is shorter than these say:
+    enf_path_ranges ranges;
     enf_sound_path *out;
     int32_t trace_count, portal_count; ///< portal_count: of the query's room
     enf_sound sound;
@@ -52,12 +54,22 @@ static int64_t passing_cost(const hearing *h, int32_t portal, bool is_shut) {
 // ---------------------------------------------------------------------------------------------- from the
 // source
 
-/// Takes the cost of a portal, passed.
+/// No way from a portal's point to the listener is shorter.
+static int64_t bound(const hearing *h, int32_t portal) {
+    if (!h->is_plain) return 0;
+    int64_t straight = enf_path_straight(h->paths, enf_path_place(h->paths, portal), h->listener.point);
+    int32_t gate = h->paths->gate[portal / 2];
+    int64_t other = gate >= 0 ? enf_path_landmarks_bound(h->paths, gate, &h->ranges) : 0;
+    return straight > other ? straight : other;
+}
+
+/// Takes the cost of a portal, passed, if a way through it can end within the range.
 static void reach(hearing *h, int32_t portal, int64_t cost) {
+    if (enf_path_is_reached(&h->finder->search, portal) && cost >= h->finder->search.cost[portal]) return;
     bool is_shut;
     enf_instance_lead(h->instance, h->paths->view, portal, &is_shut);
     int64_t passing = passing_cost(h, portal, is_shut);
-    if (passing == ENF_PATH_NEVER || cost > h->range - passing) return;
+    if (passing == ENF_PATH_NEVER || cost > h->range - passing - bound(h, portal)) return;
     enf_path_search_reach(&h->finder->search, portal, cost + passing, cost + passing);
 }
 
@@ -206,6 +218,10 @@ enf_status enf_sound_find(enf_path_finder *finder, const enf_instance *instance,
     if (status || h.source.cell < 0 || h.listener.cell < 0) return status;
     double units = query->range * h.paths->unit;
     h.range = units < 0x1p61 ? (int64_t)units : INT64_C(1) << 61;
+    const int32_t *transforms;
+    h.is_plain = enf_instance_transforms(instance, &transforms) == 0;
+    if (h.is_plain && h.paths->component[h.source.cell] != h.paths->component[h.listener.cell]) return ENF_OK;
+    enf_path_landmarks_look(h.paths, &h.listener, &h.ranges);
     spread_from_source(&h);
     find_ways(&h, capacity);
     *sound = h.sound;

@@ -3,6 +3,7 @@
 #include "enfilade/view.h"
 
 #include "base/options.h"
+#include "run/instance.h"
 #include "run/open.h"
 #include "run/view_parts.h"
 
@@ -192,7 +193,7 @@ static void look_around(enf_view *view, int32_t cell) {
 const enf_visible *enf_view_run(enf_view *view, const enf_instance *instance, const enf_camera *camera) {
     enf_visible *visible = &view->visible;
     *visible = (enf_visible){.cell = -1, .entries = view->entries, .spaces = view->spaces.spaces};
-    view->instance = instance;
+    view->instance = enf_instance_is_changed(instance) ? instance : NULL;
     if (!set_camera(view, camera)) {
         visible->flags = ENF_VIEW_NO_CAMERA;
         return visible;

@@ -209,7 +209,8 @@ static bool look_at(enf_view *view, look *look) {
         return true;
     }
     if (!is_left_out(view, ENF_VIEW_SPHERE) &&
-        enf_region_misses_sphere(&visit->region, look->clipping.lens, portal->centre, portal->radius)) {
+        enf_region_misses_sphere(&visit->region, look->clipping.lens, portal->centre,
+                                 portal->radius + look->clipping.near_distance)) {
         stats->by_sphere++;
         return true;
     }
@@ -224,6 +225,40 @@ static bool look_at(enf_view *view, look *look) {
     return look_through(view, look, facing);
 }
 
+/// Gives a visit its place in the list, if it has none yet.
+static void list(enf_view *view, int32_t number) {
+    enf_view_visit *visit = &view->queue.visits[number];
+    enf_view_place *place = &view->queue.places[visit->place];
+    int32_t *entry = view->options.every_region ? &visit->entry : &place->entry;
+    if (*entry >= 0) return;
+    *entry = view->visible.entry_count++;
+    view->order[*entry] = number;
+    view->entries[*entry].nearest = visit->nearest;
+}
+
+/// Looks through all portals of a visit's cell. False: no room.
+static bool look_around(enf_view *view, int32_t number) {
+    enf_view_visit *visit = &view->queue.visits[number];
+    const enf_view_place *place = &view->queue.places[visit->place];
+    const enf_view_space *space = &view->spaces.spaces[place->space];
+    const enf_file_cell *from = &view->file->cells[place->cell];
+    look look = {.visit = number, .space = place->space};
+    double far_side[4];
+    look.clipping = prepare_clipping(view, visit, place->space);
+    if (space->has_plane) {
+        for (int a = 0; a < 4; a++) far_side[a] = -space->plane[a];
+        far_side[3] += look.clipping.near_distance; // times the normal's length, which is about 1
+        look.clipping.planes[1] = far_side;
+    }
+    enf_region_measure(&visit->region, look.clipping.lens);
+    view->visible.stats.visits++;
+    for (int32_t i = 0; i < from->portal_count; i++) {
+        look.portal = view->file->cell_portals[from->portal_first + i];
+        if (!look_at(view, &look)) return false;
+    }
+    return true;
+}
+
 bool enf_view_walk(enf_view *view, int32_t cell) {
     static const double screen[4] = {-1, -1, 1, 1};
     enf_view_arrival start = {.region = &view->region, .cell = cell, .parent = -1, .portal = -1};
@@ -232,30 +267,8 @@ bool enf_view_walk(enf_view *view, int32_t cell) {
     enf_region_make_rectangle(&view->region, screen);
     if (!enf_queue_add(&view->queue, &start, &view->visible)) return false;
     for (int32_t number; (number = enf_queue_take(&view->queue)) >= 0;) {
-        enf_view_visit *visit = &view->queue.visits[number];
-        enf_view_place *place = &view->queue.places[visit->place];
-        const enf_file_cell *from = &view->file->cells[place->cell];
-        int32_t *entry = view->options.every_region ? &visit->entry : &place->entry;
-        if (*entry < 0) {
-            *entry = view->visible.entry_count++;
-            view->order[*entry] = number;
-            view->entries[*entry].nearest = visit->nearest;
-        }
-        view->visible.stats.visits++;
-        look look = {.visit = number, .space = place->space};
-        look.clipping = prepare_clipping(view, visit, place->space);
-        const enf_view_space *space = &view->spaces.spaces[place->space];
-        double far_side[4];
-        for (int a = 0; a < 4; a++) far_side[a] = -space->plane[a];
-        if (space->has_plane) {
-            far_side[3] += look.clipping.near_distance; // times the normal's length, which is about 1
-            look.clipping.planes[1] = far_side;
-        }
-        enf_region_measure(&visit->region, look.clipping.lens);
-        for (int32_t i = 0; i < from->portal_count; i++) {
-            look.portal = view->file->cell_portals[from->portal_first + i];
-            if (!look_at(view, &look)) return false;
-        }
+        list(view, number);
+        if (!look_around(view, number)) return false;
     }
     return true;
 }

@@ -7,7 +7,7 @@
 // path is found exactly by this measure. Of equally short ones it is the one whose first portal has the
 // lowest number, then the second, and so on, with or without a table.
 //
-// Cells with exactly two portals are no places to decide: they are contracted into chains (the thesis, 3.3.6;
+// Cells with exactly two portals are no places to decide: they are contracted into chains (the thesis, 3.3.4;
 // it did so by hand for a game). If a table of lengths between all remaining portals fits into the memory
 // allowed, answers come from it; otherwise, and when a door on the path is closed, from a search (A*, guided
 // by straight lengths and landmarks).
@@ -41,9 +41,10 @@ typedef struct enf_paths_options {
     bool skip_contraction;    ///< every cell counts as a junction
 } enf_paths_options;
 
-/// Prepares the paths of a world, which must stay open as long as they live. Takes 44 bytes a portal, and the
-/// table with n^2 / 2 lengths of 8 bytes and n searches for n portals next to junctions. ENF_NO_RESOURCES
-/// without memory.
+/// Prepares the paths of a world, which must stay open as long as they live. Takes 64 bytes for each pair of
+/// portals and 5 for each cell. For n pairs next to junctions, each landmark takes 8 n bytes and one search
+/// of the whole world, and the table 4 n^2 bytes and n such searches. ENF_BAD_USAGE for options out of range,
+/// ENF_NO_RESOURCES without memory.
 ENF_API enf_status enf_paths_create(enf_paths **paths, const enf_world *world,
                                     const enf_paths_options *options, enf_error *error);
 
@@ -66,7 +67,8 @@ typedef struct enf_path_finder_options {
     int32_t sound_steps_max; ///< steps of a search for several sound paths (sound.h); 0: 4096
 } enf_path_finder_options;
 
-/// The paths must live as long as the finder. Takes 36 bytes a portal, and 32 bytes a step. ENF_BAD_USAGE for
+/// The paths must live as long as the finder. Takes 80 bytes for each pair of portals, 4 for each cell,
+/// and at most 84 for each step. ENF_BAD_USAGE for
 /// options out of range, ENF_NO_RESOURCES without memory.
 ENF_API enf_status enf_path_finder_create(enf_path_finder **finder, const enf_paths *paths,
                                           const enf_path_finder_options *options, enf_error *error);
@@ -125,7 +127,7 @@ typedef struct enf_near_cell {
 } enf_near_cell;
 
 /// Lists the cells within a distance along the graph, nearest first, equally near ones by their portal's
-/// number: what a radar or a map shows (the thesis, 3.3.6). Closed doors are not passed. `cell` is that of
+/// number: what a radar or a map shows (the thesis, 3.3.4). Closed doors are not passed. `cell` is that of
 /// the point, or -1: it is searched for. Writes at most `capacity` cells to `out`; *count receives how many
 /// there are, but the search ends with one more than the capacity. ENF_BAD_USAGE as above, or for a distance
 /// that is no number.
