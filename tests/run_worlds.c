@@ -291,13 +291,11 @@ static void drop_fixture(enf_file_view *view) {
     for (int32_t i = 0; i < view->spawn_count; i++) spawns[i].cell = -1;
 }
 
-/// Opens the file and removes it.
-static run_world open_world(const char *path) {
-    run_world opened = {.bytes = NULL};
+/// Opens the bytes, which the world then owns.
+static run_world open_bytes(unsigned char *bytes, size_t size) {
+    run_world opened = {.bytes = bytes, .size = size};
     enf_error error;
-    opened.bytes = fixture_read_file(path, &opened.size);
-    remove(path);
-    if (enf_world_open_memory(&opened.world, opened.bytes, opened.size, NULL, &error)) {
+    if (enf_world_open_memory(&opened.world, bytes, size, NULL, &error)) {
         fprintf(stderr, "%s\n", error.text);
         abort();
     }
@@ -311,6 +309,23 @@ static run_world open_world(const char *path) {
         }
     }
     return opened;
+}
+
+/// Opens the file and removes it.
+static run_world open_world(const char *path) {
+    size_t size;
+    unsigned char *bytes = fixture_read_file(path, &size);
+    remove(path);
+    return open_bytes(bytes, size);
+}
+
+run_world run_world_whole(int side) {
+    fixture fixture;
+    size_t size;
+    fixture_make(&fixture, side, NULL);
+    unsigned char *bytes = fixture_save(&fixture, &size);
+    fixture_free(&fixture);
+    return open_bytes(bytes, size);
 }
 
 static void name_file(char path[]) {

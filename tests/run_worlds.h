@@ -16,6 +16,10 @@ typedef struct run_world {
 
 /// `side`: cubes along an edge, even; half of them are air. `turned`: no face is parallel to an axis.
 run_world run_world_grid(int side, bool turned, uint64_t seed);
+
+/// The world of world_fixture: two cells, with lines of sight and the exact complex, without a visible set.
+run_world run_world_whole(int side);
+
 #ifdef ENFILADE_CLI
 /// Compiles an OBJ file, gzipped or not.
 run_world run_world_compile(const char *path);

@@ -27,24 +27,31 @@ typedef struct stage {
     double inside[3]; ///< a point of a cell
 } stage;
 
+/// One world with a visible set, and one with lines of sight and the exact complex.
+enum { WITH_SET, WITH_SIGHT, STAGES };
+
 static int set_up(void **state) {
-    static stage s;
-    s.w = run_world_grid(4, false, 7);
-    const enf_file_view *view = enf_world_file(s.w.world);
+    static stage stages[STAGES];
     uint64_t seed = 1;
-    do {
-        for (int a = 0; a < 3; a++)
-            s.inside[a] = s.w.box_min[a] + run_random_share(&seed) * (s.w.box_max[a] - s.w.box_min[a]);
-    } while (enf_world_locate(s.w.world, s.inside, -1).cell < 0);
-    assert_non_null(view->pvs);
-    assert_non_null(view->sight);
-    *state = &s;
+    stages[WITH_SET].w = run_world_grid(4, false, 7);
+    stages[WITH_SIGHT].w = run_world_whole(2);
+    for (stage *s = stages; s < stages + STAGES; s++) {
+        do {
+            for (int a = 0; a < 3; a++)
+                s->inside[a] =
+                    s->w.box_min[a] + run_random_share(&seed) * (s->w.box_max[a] - s->w.box_min[a]);
+        } while (enf_world_locate(s->w.world, s->inside, -1).cell < 0);
+    }
+    assert_non_null(enf_world_file(stages[WITH_SET].w.world)->pvs);
+    assert_non_null(enf_world_file(stages[WITH_SIGHT].w.world)->sight);
+    assert_true(enf_world_file(stages[WITH_SIGHT].w.world)->has_exact);
+    *state = stages;
     return 0;
 }
 
 static int tear_down(void **state) {
-    stage *s = *state;
-    run_world_free(&s->w);
+    stage *stages = *state;
+    for (int i = 0; i < STAGES; i++) run_world_free(&stages[i].w);
     return 0;
 }
 
@@ -85,7 +92,9 @@ static void expect_parts(const enf_file_view *view, const enf_file_view *whole, 
 
 static void every_set_of_parts_shows_these_parts_only(void **state) {
     stage *s = *state;
-    for (uint32_t loads = 0; loads <= ENF_LOAD_ALL; loads++) {
+    for (uint32_t both = 0; both <= 2 * ENF_LOAD_ALL + 1; both++) {
+        uint32_t loads = both & ENF_LOAD_ALL;
+        s = (stage *)*state + (both > ENF_LOAD_ALL);
         enf_world *world = open_lazily(s->w.bytes, s->w.size);
         assert_int_equal(enf_world_load(world, loads, NULL), ENF_OK);
         assert_int_equal(enf_world_loaded(world), with_needs(loads));
@@ -113,7 +122,7 @@ static void older_views_stay_as_they_were(void **state) {
 }
 
 static void what_is_not_loaded_is_not_there(void **state) {
-    stage *s = *state;
+    stage *s = (stage *)*state + WITH_SIGHT;
     enf_world *world = open_lazily(s->w.bytes, s->w.size);
     assert_int_equal(enf_world_locate(world, s->inside, -1).cell, -1);
     enf_sight_query query = {.size = sizeof query};
@@ -190,8 +199,7 @@ static enf_file_section *section_of(unsigned char *file, const char *tag) {
 }
 
 /// Every section in turn becomes rubbish. All parts load but its own, and those that need it.
-static void damage_is_found_when_a_part_is_loaded(void **state) {
-    stage *s = *state;
+static void find_damage(const stage *s) {
     unsigned char *copy = malloc(s->w.size);
     assert_non_null(copy);
     memcpy(copy, s->w.bytes, s->w.size);
@@ -219,6 +227,11 @@ static void damage_is_found_when_a_part_is_loaded(void **state) {
     }
     assert_true(found > 10);
     free(copy);
+}
+
+static void damage_is_found_when_a_part_is_loaded(void **state) {
+    stage *stages = *state;
+    for (int i = 0; i < STAGES; i++) find_damage(&stages[i]);
 }
 
 enum { THREADS = 8 };
