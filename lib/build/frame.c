@@ -7,7 +7,7 @@
 #include "build/frame.h"
 
 #include "base/hash.h"
-#include "base/limbs.h"
+#include "build/wide.h"
 
 #include <float.h>
 #include <math.h>
@@ -16,11 +16,11 @@
 /// What is known of one axis of the input.
 typedef struct axis_key {
     double extent;
-    enf_int128 even[3]; ///< sums of |u|, u^2, |u|^3: do not change when the axis is mirrored
-    int sign;           ///< of the first odd moment that is not 0; 0 if all are
+    enf_wide even[3]; ///< sums of |u|, u^2, |u|^3: do not change when the axis is mirrored
+    int sign;         ///< of the first odd moment that is not 0; 0 if all are
 } axis_key;
 
-static int compare_int128(enf_int128 a, enf_int128 b) {
+static int compare_wide(enf_wide a, enf_wide b) {
     return (a > b) - (a < b);
 }
 
@@ -28,7 +28,7 @@ static int compare_int128(enf_int128 a, enf_int128 b) {
 static int compare_axes(const axis_key *a, const axis_key *b) {
     if (a->extent != b->extent) return a->extent > b->extent ? -1 : 1;
     for (int k = 0; k < 3; k++) {
-        int order = compare_int128(b->even[k], a->even[k]);
+        int order = compare_wide(b->even[k], a->even[k]);
         if (order) return order;
     }
     return 0;
@@ -70,18 +70,18 @@ static void find_keys(const double *points, size_t count, const double low[3], c
     int exponent = 0;
     frexp(largest, &exponent);
     for (int a = 0; a < 3; a++) {
-        enf_int128 odd[3] = {0}, even[3] = {0};
+        enf_wide odd[3] = {0}, even[3] = {0};
         for (size_t i = 0; i < count; i++) {
             // Truncated to 30 bits of the largest one: cubes of 2^31 points fit 128 bits.
             int64_t u = (int64_t)scaled(centred(points[3 * i + a], low[a], high[a]), 30 - exponent);
             int64_t size = u < 0 ? -u : u, square = u * u;
-            enf_int128 cube = (enf_int128)square * size;
+            enf_wide cube = (enf_wide)square * size;
             odd[0] += u, odd[1] += u < 0 ? -cube : cube, odd[2] += u < 0 ? -square : square;
             even[0] += size, even[1] += square, even[2] += cube;
         }
         keys[a] = (axis_key){.extent = high[a] - low[a]};
         memcpy(keys[a].even, even, sizeof even);
-        for (int k = 0; k < 3 && keys[a].sign == 0; k++) keys[a].sign = compare_int128(odd[k], 0);
+        for (int k = 0; k < 3 && keys[a].sign == 0; k++) keys[a].sign = compare_wide(odd[k], 0);
     }
 }
 

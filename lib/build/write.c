@@ -4,6 +4,7 @@
 #include "build/write_parts.h"
 
 #include "base/array.h"
+#include "build/wide.h"
 #include "format/read.h"
 #include "format/save.h"
 #include "format/sections.h"
@@ -17,8 +18,6 @@ _Static_assert(sizeof(bool) == sizeof(uint8_t), "flags are written as they are")
 _Static_assert((int)ENF_KIND_AIR == (int)ENF_WORLD_AIR && (int)ENF_KIND_ROCK == (int)ENF_WORLD_ROCK &&
                    (int)ENF_KIND_OUTSIDE == (int)ENF_WORLD_OUTSIDE,
                "kinds are written as they are");
-
-__extension__ typedef __int128 wide;
 
 void *enf_image_new(enf_image *image, size_t count, size_t size) {
     if (image->owned_count == ENF_IMAGE_OWNED_MAX) return NULL;
@@ -345,7 +344,7 @@ static void world_normal(const enf_build *build, int32_t plane, double normal[3]
     double grid[3], largest = 0;
     for (int a = 0; a < 3; a++) {
         int b = (a + 1) % 3, c = (a + 2) % 3;
-        grid[a] = (double)((wide)u[b] * v[c] - (wide)u[c] * v[b]);
+        grid[a] = (double)((enf_wide)u[b] * v[c] - (enf_wide)u[c] * v[b]);
         largest = fmax(largest, fabs(grid[a]));
     }
     double length = 0;

@@ -5,12 +5,11 @@
 #include "build/write_parts.h"
 
 #include "base/array.h"
+#include "build/wide.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-__extension__ typedef __int128 wide;
 
 /// Boxes are larger than what they hold by this share of the world, so that queries may round
 /// (lib/run/walk.h).
@@ -67,7 +66,7 @@ static void normal_of(const int64_t u[3], const int64_t v[3], double normal[3]) 
     double largest = 0, length = 0;
     for (int a = 0; a < 3; a++) {
         int b = (a + 1) % 3, c = (a + 2) % 3;
-        normal[a] = (double)((wide)u[b] * v[c] - (wide)u[c] * v[b]);
+        normal[a] = (double)((enf_wide)u[b] * v[c] - (enf_wide)u[c] * v[b]);
         largest = fmax(largest, fabs(normal[a]));
     }
     for (int a = 0; a < 3 && largest > 0; a++) length += (normal[a] / largest) * (normal[a] / largest);
