@@ -4,6 +4,7 @@
 #include "world_fixture.h"
 
 #include "base/exact.h"
+#include "base/narrow.h"
 #include "enfilade/run.h"
 
 #include <math.h>
@@ -297,6 +298,55 @@ static void extreme_coordinates_do_not_overflow_the_predicate(void **state) {
     assert_int_equal(enf_points_orient(a, b, c, f), 1);
 }
 
+static int64_t random_wide(uint64_t *seed) { // up to 2^54, of any magnitude
+    int64_t value = (int64_t)(next_random(seed) >> 10 >> next_random(seed) % 54);
+    return next_random(seed) % 2 ? -value : value;
+}
+
+/// Limbs of 32 bits tell the sign of determinants whose rows are known to depend on each other, or not.
+static void narrow_determinants_are_exact(void **state) {
+    (void)state;
+    uint64_t seed = 99;
+    for (int round = 0; round < 200000; round++) {
+        int64_t m[3][3] = {{0}}, p = (int64_t)(next_random(&seed) % 3), s = (int64_t)(next_random(&seed) % 4);
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k <= i; k++) m[i][k] = random_wide(&seed);
+        int sign = 1;
+        for (int i = 0; i < 3; i++) sign *= (m[i][i] > 0) - (m[i][i] < 0);
+        assert_int_equal(enf_narrow_determinant(m[p], m[(p + 1) % 3], m[(p + 2) % 3]), sign);
+        assert_int_equal(enf_narrow_determinant(m[(p + 1) % 3], m[p], m[(p + 2) % 3]), -sign);
+        // The third row becomes a sum of others, and then one that is 1 off in one place.
+        int64_t u[3], v[3], w[3];
+        for (int k = 0; k < 3; k++) {
+            u[k] = random_wide(&seed) / 4;
+            v[k] = random_wide(&seed) / 8;
+            w[k] = u[k] - s * v[k];
+        }
+        assert_int_equal(enf_narrow_determinant(u, v, w), 0);
+        u[2] = 0, v[2] = 0; // det = w[2] * (u[0] v[1] - u[1] v[0])
+        u[1] = 0;
+        w[2] = p - 1;
+        sign = (u[0] > 0) - (u[0] < 0);
+        sign *= (v[1] > 0) - (v[1] < 0);
+        assert_int_equal(enf_narrow_determinant(u, v, w), sign * (int)(p - 1));
+#ifdef __SIZEOF_INT128__
+        double a[3], b[3], c[3], d[3];
+        int64_t rows[3][3];
+        for (int k = 0; k < 3; k++) {
+            a[k] = (double)(random_wide(&seed) / 2);
+            b[k] = (double)(random_wide(&seed) / 2);
+            c[k] = (double)(random_wide(&seed) / 2);
+            d[k] = round % 2 ? (double)(random_wide(&seed) / 2) : b[k] + (k == 0);
+            rows[0][k] = (int64_t)b[k] - (int64_t)a[k];
+            rows[1][k] = (int64_t)c[k] - (int64_t)a[k];
+            rows[2][k] = (int64_t)d[k] - (int64_t)a[k];
+        }
+        assert_int_equal(enf_narrow_determinant(rows[0], rows[1], rows[2]),
+                         enf_points_orient_exactly(a, b, c, d));
+#endif
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_points_are_found_where_they_are),
@@ -309,6 +359,7 @@ int main(void) {
         cmocka_unit_test(spawn_points_are_found_where_the_file_says),
         cmocka_unit_test(the_summary_counts),
         cmocka_unit_test(extreme_coordinates_do_not_overflow_the_predicate),
+        cmocka_unit_test(narrow_determinants_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
