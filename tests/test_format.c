@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The file: what is written comes back, and nothing that is wrong with a file gets past the opener.
+#include "run_worlds.h"
 #include "world_fixture.h"
 
 #include "base/hash.h"
@@ -493,6 +494,34 @@ static void hostile_numbers_never_crash(void **state) {
     free(copy);
 }
 
+/// Damaged bytes and short files, past the checksums: errors, or worlds that answer, whole and lazily. One in
+/// `step` bytes (all of them with ENFILADE_TEST_SCALE=40).
+static void expect_answers(unsigned char *bytes, size_t size, size_t step, size_t first) {
+    enf_file_header *header = (void *)bytes;
+    for (size_t i = first; i < size; i += step) {
+        bytes[i] ^= (unsigned char)(1u << (i / step + i) % 8);
+        LLVMFuzzerTestOneInput(bytes, size);
+        bytes[i] ^= (unsigned char)(1u << (i / step + i) % 8);
+    }
+    uint64_t whole = header->file_size;
+    for (size_t i = first; i < size; i += step) LLVMFuzzerTestOneInput(bytes, i);
+    assert_int_equal(header->file_size, whole);
+    assert_int_equal(open_copy(bytes, size, NULL), ENF_OK);
+}
+
+static void damaged_bytes_give_errors_or_answers(void **state) {
+    fixture_saved *s = *state;
+    const char *text = getenv("ENFILADE_TEST_SCALE");
+    double scale = text && atof(text) > 0 ? atof(text) : 1;
+    size_t step = scale >= 40 ? 1 : (size_t)(40 / scale);
+    size_t first = (size_t)getpid() % step;
+    print_message("byte %zu, then every %zuth\n", first, step);
+    expect_answers(s->bytes, s->size, step, first);
+    run_world grid = run_world_grid(2, false, 3); // with a visible set
+    expect_answers(grid.bytes, grid.size, step, first);
+    run_world_free(&grid);
+}
+
 static void expect_refusal(fixture_saved *s, const char *tag, size_t offset, int32_t value) {
     unsigned char *copy = malloc(s->size);
     assert_non_null(copy);
@@ -599,6 +628,7 @@ int main(void) {
         cmocka_unit_test(hostile_table_entries_are_refused),
         cmocka_unit_test(sections_that_overlap_or_stick_out_are_refused),
         cmocka_unit_test(hostile_numbers_never_crash),
+        cmocka_unit_test(damaged_bytes_give_errors_or_answers),
         cmocka_unit_test(each_kind_of_bad_index_is_named),
         cmocka_unit_test(tetrahedra_may_share_a_tree),
         cmocka_unit_test(unreadable_paths_are_told_from_bad_files),
