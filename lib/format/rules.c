@@ -1,88 +1,69 @@
 // SPDX-License-Identifier: MIT
-// Each rule looks at a block of numbers without a branch, so that compilers use wide registers and the pass
-// runs as fast as memory; only in a bad block is the bad number searched for.
+// Each rule looks at blocks of numbers without a branch, so that compilers use wide registers and the pass
+// runs as fast as memory; only what is left, and a bad block, is looked at one by one.
 #include "format/rules.h"
 
 #include <math.h>
 
 enum { BLOCK = 256 };
 
-static int64_t least(int64_t a, int64_t b) {
-    return a < b ? a : b;
-}
-
 static int64_t find_bad_index(const int32_t *values, int64_t count, int32_t lowest, int64_t end) {
     if (end <= lowest) return count ? 0 : -1;
-    uint32_t span = (uint32_t)(end - lowest);
-    for (int64_t i = 0; i < count; i += BLOCK) {
-        int64_t stop = least(i + BLOCK, count);
-        uint32_t bad = 0;
-        for (int64_t k = i; k < stop; k++) bad |= (uint32_t)values[k] - (uint32_t)lowest >= span;
-        for (int64_t k = i; bad; k++)
-            if ((uint32_t)values[k] - (uint32_t)lowest >= span) return k;
-    }
-    return -1;
+    uint32_t span = (uint32_t)(end - lowest), bad = 0;
+    int64_t i = 0;
+    for (; count - i >= BLOCK && !bad; i += bad ? 0 : BLOCK)
+        for (int k = 0; k < BLOCK; k++) bad |= (uint32_t)values[i + k] - (uint32_t)lowest >= span;
+    while (i < count && (uint32_t)values[i] - (uint32_t)lowest < span) i++;
+    return i < count ? i : -1;
 }
 
 static int64_t find_bad_offset32(const int32_t *offsets, int64_t count, int64_t end) {
+    uint32_t bad = 0;
+    int64_t i = 0;
     if (offsets[0] != 0) return 0;
-    for (int64_t i = 0; i < count; i += BLOCK) {
-        int64_t stop = least(i + BLOCK, count);
-        uint32_t bad = 0;
-        for (int64_t k = i; k < stop; k++) bad |= offsets[k + 1] < offsets[k];
-        for (int64_t k = i; bad; k++)
-            if (offsets[k + 1] < offsets[k]) return k + 1;
-    }
+    for (; count - i >= BLOCK && !bad; i += bad ? 0 : BLOCK)
+        for (int k = 0; k < BLOCK; k++) bad |= offsets[i + k + 1] < offsets[i + k];
+    while (i < count && offsets[i + 1] >= offsets[i]) i++;
+    if (i < count) return i + 1;
     return offsets[count] == end ? -1 : count;
 }
 
 static int64_t find_bad_offset64(const int64_t *offsets, int64_t count, int64_t end) {
     if (offsets[0] != 0) return 0;
-    for (int64_t i = 0; i < count; i += BLOCK) {
-        int64_t stop = least(i + BLOCK, count);
-        uint64_t bad = 0;
-        for (int64_t k = i; k < stop; k++) bad |= offsets[k + 1] < offsets[k];
-        for (int64_t k = i; bad; k++)
-            if (offsets[k + 1] < offsets[k]) return k + 1;
-    }
+    for (int64_t i = 0; i < count; i++)
+        if (offsets[i + 1] < offsets[i]) return i + 1;
     return offsets[count] == end ? -1 : count;
 }
 
 static int64_t find_bad_corner(const enf_file_view *view, const enf_file_corner *corners, int64_t count) {
-    uint32_t vertices = (uint32_t)view->vertex_count, planes = (uint32_t)view->plane_count;
-    for (int64_t i = 0; i < count; i += BLOCK) {
-        int64_t stop = least(i + BLOCK, count);
-        uint32_t bad = 0;
-        for (int64_t k = i; k < stop; k++)
-            bad |= ((uint32_t)corners[k].vertex >= vertices) | ((uint32_t)corners[k].edge_plane >= planes);
-        for (int64_t k = i; bad; k++)
-            if ((uint32_t)corners[k].vertex >= vertices || (uint32_t)corners[k].edge_plane >= planes)
-                return k;
-    }
-    return -1;
+    uint32_t vertices = (uint32_t)view->vertex_count, planes = (uint32_t)view->plane_count, bad = 0;
+    int64_t i = 0;
+    for (; count - i >= BLOCK && !bad; i += bad ? 0 : BLOCK)
+        for (int k = 0; k < BLOCK; k++)
+            bad |= ((uint32_t)corners[i + k].vertex >= vertices) |
+                   ((uint32_t)corners[i + k].edge_plane >= planes);
+    while (i < count && (uint32_t)corners[i].vertex < vertices && (uint32_t)corners[i].edge_plane < planes)
+        i++;
+    return i < count ? i : -1;
 }
 
 static int64_t find_bad_flag(const uint8_t *values, int64_t count) {
-    for (int64_t i = 0; i < count; i += BLOCK) {
-        int64_t stop = least(i + BLOCK, count);
-        uint8_t all = 0;
-        for (int64_t k = i; k < stop; k++) all |= values[k];
-        for (int64_t k = i; all > 1; k++)
-            if (values[k] > 1) return k;
-    }
-    return -1;
+    uint8_t all = 0;
+    int64_t i = 0;
+    for (; count - i >= BLOCK && all <= 1; i += all <= 1 ? BLOCK : 0)
+        for (int k = 0; k < BLOCK; k++) all |= values[i + k];
+    while (i < count && values[i] <= 1) i++;
+    return i < count ? i : -1;
 }
 
 // NaN compares false with everything, so it is found as well.
 int64_t enf_find_bad_double(const double *values, int64_t count, double largest) {
-    for (int64_t i = 0; i < count; i += BLOCK) {
-        int64_t stop = least(i + BLOCK, count);
-        uint64_t bad = 0;
-        for (int64_t k = i; k < stop; k++) bad |= !(fabs(values[k]) <= largest);
-        for (int64_t k = i; bad; k++)
-            if (!(fabs(values[k]) <= largest)) return k;
-    }
-    return -1;
+    uint64_t bad = 0;
+    int64_t i = 0;
+    for (; count - i >= BLOCK && !bad; i += bad ? 0 : BLOCK)
+        for (int k = 0; k < BLOCK; k++) bad |= !(fabs(values[i + k]) <= largest);
+    while (i < count && fabs(values[i]) <= largest) i++;
+    return i < count ? i : -1;
 }
 
 int64_t enf_find_bad_element(const enf_file_view *view, const enf_section_spec *spec) {
