@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Installs the run-time library, moves the tree, builds the program of README.md against it with nothing but
 # pkg-config, and runs it: with the shared library, and with the static one alone.
-# BUILD, SOURCE, COMPILER, FLAGS, PKG_CONFIG, LIBDIR: below the prefix, SEEDS: a program that writes worlds
+# BUILD, SOURCE, COMPILER, CXX_COMPILER: or empty, FLAGS, PKG_CONFIG, LIBDIR: below the prefix, SEEDS: a program that writes worlds
 set(tree "${BUILD}/tests/installed")
 file(REMOVE_RECURSE "${tree}" "${tree}-first")
 execute_process(COMMAND "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${tree}-first" --component run
@@ -12,6 +12,21 @@ execute_process(COMMAND "${SEEDS}" "${tree}/worlds" OUTPUT_QUIET COMMAND_ERROR_I
 file(GLOB world "${tree}/worlds/cubes-4.enf")
 set(ENV{PKG_CONFIG_PATH} "${tree}/${LIBDIR}/pkgconfig")
 separate_arguments(flags NATIVE_COMMAND "${FLAGS}")
+
+# All headers at once, in strict C11 and, where there is a compiler for it, C++.
+file(GLOB headers RELATIVE "${tree}/include" "${tree}/include/enfilade/*.h")
+set(text)
+foreach(header ${headers})
+    string(APPEND text "#include <${header}>\n")
+endforeach()
+file(WRITE "${tree}/all.c" "${text}int main(void) { return ENF_VERSION_MAJOR; }\n")
+execute_process(COMMAND "${COMPILER}" ${flags} -std=c11 -Wall -Wextra -pedantic-errors -Werror -fsyntax-only
+                        "-I${tree}/include" "${tree}/all.c" COMMAND_ERROR_IS_FATAL ANY)
+if(CXX_COMPILER)
+    execute_process(COMMAND "${CXX_COMPILER}" -std=c++11 -Wall -Wextra -pedantic-errors -Werror -fsyntax-only
+                            "-I${tree}/include" -x c++ "${tree}/all.c" COMMAND_ERROR_IS_FATAL ANY)
+endif()
+
 foreach(kind shared static)
     set(static)
     if(kind STREQUAL static)
