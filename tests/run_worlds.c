@@ -374,10 +374,29 @@ static void scramble(const void *array, size_t count, uint64_t *seed) {
         if (run_random(seed) % 4 == 0) numbers[i] = run_nasty(seed);
 }
 
-void run_world_scramble(run_world *world, uint64_t *seed) {
-    const enf_file_view *view = enf_world_file(world->world);
+static void open_again(run_world *world) {
     enf_open_options options = {.size = sizeof options, .skip_checksums = true};
     enf_error error;
+    enf_world_close(world->world);
+    if (!enf_world_open_memory(&world->world, world->bytes, world->size, &options, &error)) return;
+    fprintf(stderr, "%s\n", error.text);
+    abort();
+}
+
+void run_world_scramble_lists(run_world *world, uint64_t *seed) {
+    const enf_file_view *view = enf_world_file(world->world);
+    for (int32_t i = 0; i < view->cell_count; i++) {
+        const enf_file_cell *cell = &view->cells[i];
+        int32_t *list = (int32_t *)(uintptr_t)view->cell_portals + cell->portal_first;
+        if (cell->portal_count < 2 || run_random(seed) % 4) continue;
+        uint64_t to = run_random(seed) % (uint64_t)cell->portal_count;
+        list[to] = list[run_random(seed) % (uint64_t)cell->portal_count];
+    }
+    open_again(world);
+}
+
+void run_world_scramble(run_world *world, uint64_t *seed) {
+    const enf_file_view *view = enf_world_file(world->world);
     scramble(view->portal_vertices, 3 * (size_t)view->portal_vertex_count, seed);
     scramble(view->render_points, 3 * (size_t)view->render_point_count, seed);
     for (int32_t i = 0; i < view->portal_polygon_count; i++)
@@ -387,10 +406,7 @@ void run_world_scramble(run_world *world, uint64_t *seed) {
         if (run_random(seed) % 4 == 0) portal->radius = fabs(run_nasty(seed));
         if (run_random(seed) % 4 == 0) portal->centre[run_random(seed) % 3] = run_nasty(seed);
     }
-    enf_world_close(world->world);
-    if (!enf_world_open_memory(&world->world, world->bytes, world->size, &options, &error)) return;
-    fprintf(stderr, "%s\n", error.text);
-    abort();
+    open_again(world);
 }
 
 void run_world_free(run_world *opened) {

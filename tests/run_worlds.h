@@ -29,6 +29,9 @@ run_world run_world_compile(const char *path);
 /// again.
 void run_world_scramble(run_world *world, uint64_t *seed);
 
+/// Lets some cells list a portal twice, and another one not, and opens the world again.
+void run_world_scramble_lists(run_world *world, uint64_t *seed);
+
 /// Such a number.
 double run_nasty(uint64_t *seed);
 

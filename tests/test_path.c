@@ -544,6 +544,30 @@ static void nonsense_in_files_ends(void **state) {
     }
 }
 
+/// Portals that some cells do not list can be passed one way only: gates that some landmarks reach and others
+/// do not. For sanitizers.
+static void lists_without_meaning_end(void **state) {
+    (void)state;
+    uint64_t seed = begin(12);
+    for (int n = 0; n < 40; n++) {
+        run_world opened = run_world_grid(4, n % 2, run_random(&seed));
+        run_world_scramble_lists(&opened, &seed);
+        bench b;
+        make_bench(&b, opened);
+        for (int k = 0; k < 40; k++) {
+            enf_path_query query = {.size = sizeof query};
+            enf_path path;
+            query.from_cell = random_below(&seed, b.view->cell_count);
+            query.to_cell = random_below(&seed, b.view->cell_count);
+            for (int i = 0; i < 4; i++) {
+                assert_int_equal(enf_path_find(b.finder[i], NULL, &query, &path, NULL), ENF_OK);
+                assert_true(path.length >= 0 && isfinite(path.length));
+            }
+        }
+        free_bench(&b);
+    }
+}
+
 static void wrong_calls_are_refused(void **state) {
     (void)state;
     bench b;
@@ -644,6 +668,7 @@ int main(void) {
         cmocka_unit_test(lines_pass_transforms),
         cmocka_unit_test(near_cells_agree_with_bellman),
         cmocka_unit_test(nonsense_in_files_ends),
+        cmocka_unit_test(lists_without_meaning_end),
         cmocka_unit_test(wrong_calls_are_refused),
 #ifdef ENFILADE_CLI
         cmocka_unit_test(compiled_worlds_agree_with_floyd),

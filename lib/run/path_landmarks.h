@@ -39,8 +39,8 @@ static inline int64_t enf_path_landmarks_bound(const enf_paths *paths, int32_t g
                                                const enf_path_ranges *ranges) {
     const int64_t *row = paths->landmarks + (size_t)gate * (size_t)paths->landmark_count;
     int64_t bound = 0;
-    if (ranges->count == 0 || row[0] == ENF_PATH_NEVER) return 0;
     for (int32_t k = 0; k < ranges->count; k++) {
+        if (row[k] == ENF_PATH_NEVER) continue; // in a file without meaning, of some landmarks only
         int64_t one = row[k] - ranges->high[k], other = ranges->low[k] - row[k];
         if (one > bound) bound = one;
         if (other > bound) bound = other;

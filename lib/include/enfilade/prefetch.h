@@ -48,9 +48,9 @@ ENF_API int32_t enf_prefetch_list(enf_prefetch *prefetch, int32_t cell, const do
 
 /// Tells the system that a cell's triangles, with their points, normals and texture coordinates, will be
 /// needed soon, or not any more. Changes nothing but where they lie: whoever touches them later gets them all
-/// the same. Pages that other cells share go, too. Does nothing for a world that was opened in memory, and
-/// for a cell that the world does not have. Reads the cell's triangles, so it may wait for the disk: call it
-/// in a thread that may. Any number of threads may call it.
+/// the same. Pages that other cells share go, too. Does nothing for a world that was opened in memory or
+/// whose triangles are not loaded, and for a cell that the world does not have. Reads the cell's triangles,
+/// so it may wait for the disk: call it in a thread that may. Any number of threads may call it.
 ENF_API void enf_world_advise_cell(const enf_world *world, int32_t cell, bool needed);
 
 #ifdef __cplusplus
