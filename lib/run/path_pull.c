@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-enum { SMOOTH_SWEEPS = 12, KNOT_MAX = 16, KNOT_SWEEPS = 8 };
+enum { SMOOTH_SWEEPS = 12, KNOT_MAX = 16, KNOT_SWEEPS = 8, KNOT_TRIES = 256 };
 #define SHRINKING 0.6      // of s, per sweep
 #define KNOT_SIZE 0.05     // of the mean step
 #define LEAST_GAIN 0x1p-40 // of a length, or moving a knot is rounding
@@ -138,21 +138,34 @@ static bool move_knot(const enf_path_line *line, const knot *k, const double to[
     return good;
 }
 
-/// Tries the best point of every edge that a knot lies on.
-static bool loosen_knot(const enf_path_line *line, const knot *k, double near) {
+/// Tries the best points of the edges of a polygon that a knot lies on; not more than *tries.
+static bool loosen_from(const enf_path_line *line, const knot *k, int32_t member,
+                        const enf_file_portal_polygon *polygon, double near, int *tries) {
+    const double(*corner)[3] = line->paths->view->portal_vertices + polygon->vertex_first;
     const double *before = line->points[k->first - 1], *behind = line->points[k->first + k->count];
     bool moved = false;
+    for (int32_t i = 0, last = polygon->vertex_count - 1; i<polygon->vertex_count && * tries> 0; last = i++) {
+        const double *at = line->points[k->first + member];
+        double best[3], foot[3];
+        enf_edge_between(corner[last], corner[i], at, at, foot);
+        if (!(enf_distance(at, foot) <= near)) continue;
+        enf_edge_between(corner[last], corner[i], before, behind, best);
+        moved = move_knot(line, k, best) || moved;
+        --*tries;
+    }
+    return moved;
+}
+
+static bool loosen_knot(const enf_path_line *line, const knot *k, double near) {
+    const enf_file_view *view = line->paths->view;
+    int tries = KNOT_TRIES;
+    bool moved = false;
     for (int32_t i = 0; i < k->count; i++) {
-        const double *from, *to;
-        for (int32_t e = 0; enf_portal_edge(line->paths->view, line->portals[k->portal + i], e, &from, &to);
-             e++) {
-            const double *at = line->points[k->first + i];
-            double best[3], foot[3];
-            enf_edge_between(from, to, at, at, foot);
-            if (!(enf_distance(at, foot) <= near)) continue;
-            enf_edge_between(from, to, before, behind, best);
-            moved = move_knot(line, k, best) || moved;
-        }
+        const enf_file_portal *portal = &view->portals[line->portals[k->portal + i]];
+        for (int32_t n = 0; n < portal->polygon_count && tries > 0; n++)
+            moved =
+                loosen_from(line, k, i, &view->portal_polygons[portal->polygon_first + n], near, &tries) ||
+                moved;
     }
     return moved;
 }

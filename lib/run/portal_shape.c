@@ -89,22 +89,6 @@ void enf_edge_between(const double from[3], const double to[3], const double a[3
     enf_between(from, to, clamp_share(at), best);
 }
 
-bool enf_portal_edge(const enf_file_view *view, int32_t portal, int32_t number, const double **from,
-                     const double **to) {
-    const enf_file_portal *p = &view->portals[portal];
-    for (int32_t i = 0; i < p->polygon_count; i++) {
-        const enf_file_portal_polygon *polygon = &view->portal_polygons[p->polygon_first + i];
-        const double(*corner)[3] = view->portal_vertices + polygon->vertex_first;
-        if (number < polygon->vertex_count) {
-            *from = corner[number];
-            *to = corner[(number + 1) % polygon->vertex_count];
-            return true;
-        }
-        number -= polygon->vertex_count;
-    }
-    return false;
-}
-
 /// Where the straight way meets the plane, if that is inside; if both ends lie on one side, one of them is
 /// reflected first. Otherwise the best point is on the border: the length is convex.
 static void between_of_polygon(const enf_file_view *view, const enf_file_portal_polygon *polygon,

@@ -16,10 +16,6 @@ bool enf_portal_nearest(const enf_file_view *view, int32_t portal, const double 
 bool enf_portal_between(const enf_file_view *view, int32_t portal, const double a[3], const double b[3],
                         double best[3]);
 
-/// The ends of an edge of a portal's polygons; they are numbered through from 0 on. False: there are no more.
-bool enf_portal_edge(const enf_file_view *view, int32_t portal, int32_t number, const double **from,
-                     const double **to);
-
 /// The point u of an edge with the least |a - u| + |u - b|.
 void enf_edge_between(const double from[3], const double to[3], const double a[3], const double b[3],
                       double best[3]);
