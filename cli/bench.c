@@ -19,7 +19,6 @@ static const cli_command benches[] = {
     {"stability", "families of random soups: check, oracles, times", cli_bench_stability},
     {"visibility", "DIR: the rungs of visibility on portal files: run time against error",
      cli_bench_visibility},
-    {"run", "NAME ...: what the runtime takes per question", cli_bench_run},
     {"worlds", "[DIR]: the visible sets of compiled worlds: time and excess", cli_bench_worlds},
     {"run", "NAME ...: what the runtime takes per question", cli_bench_run},
 };

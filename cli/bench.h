@@ -29,8 +29,6 @@ int cli_bench_soups(int argc, char **argv);
 int cli_bench_stability(int argc, char **argv);
 /// The rungs of visibility on every portal file in a folder: run time against error.
 int cli_bench_visibility(int argc, char **argv);
-/// What the runtime takes per question: tables of its own (cli/bench_run.h).
-int cli_bench_run(int argc, char **argv);
 int cli_bench_worlds(int argc, char **argv);
 /// What the runtime takes per question: tables of its own (cli/bench_run.h).
 int cli_bench_run(int argc, char **argv);

@@ -8,6 +8,7 @@
 #include "cli/bench.h"
 #include "cli/cli.h"
 #include "cli/job.h"
+#include "cli/random.h"
 
 #include <dirent.h>
 #include <inttypes.h>
@@ -40,13 +41,6 @@ typedef struct outcome {
 
 // ---- rotations
 
-static uint64_t next_random(uint64_t *seed) { // splitmix64
-    uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
-
 /// The rotation of a quaternion of any length.
 static void set_from_quaternion(double m[3][3], double w, double x, double y, double z) {
     double n = w * w + x * x + y * y + z * z;
@@ -78,7 +72,7 @@ static void set_at_random(double m[3][3], uint64_t seed) {
     while (square > 1 || square < 0.01) {
         square = 0;
         for (int i = 0; i < 4; i++) {
-            q[i] = (double)(next_random(&seed) >> 11) * 0x1p-52 - 1;
+            q[i] = (double)(cli_random(&seed) >> 11) * 0x1p-52 - 1;
             square += q[i] * q[i];
         }
     }

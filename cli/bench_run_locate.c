@@ -3,9 +3,8 @@
 // as a step of a moving point. Every number is the least of several runs over the same points.
 #include "base/timer.h"
 #include "cli/bench_run.h"
-#include "cli/cli.h"
-#include "cli/options.h"
-#include "cli/world.h"
+#include "cli/bench_run_worlds.h"
+#include "cli/random.h"
 #include "enfilade/sight.h"
 
 #include <limits.h>
@@ -29,13 +28,6 @@ typedef struct bench {
     int count;
 } bench;
 
-static double next_share(uint64_t *seed) { // splitmix64
-    uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
 /// Points all over the box; those in cells until there are enough.
 static void choose_spots(bench *b) {
     const enf_file_frame *frame = b->view->frame;
@@ -44,8 +36,9 @@ static void choose_spots(bench *b) {
     for (int n = 0; n < TRIES && b->count < POINTS; n++) {
         spot spot;
         for (int a = 0; a < 3; a++) {
-            spot.at[a] = frame->box_min[a] + next_share(&b->seed) * (frame->box_max[a] - frame->box_min[a]);
-            spot.to[a] = spot.at[a] + (next_share(&b->seed) - 0.5) * 1e-3 * size;
+            spot.at[a] =
+                frame->box_min[a] + cli_random_share(&b->seed) * (frame->box_max[a] - frame->box_min[a]);
+            spot.to[a] = spot.at[a] + (cli_random_share(&b->seed) - 0.5) * 1e-3 * size;
         }
         spot.place = enf_world_locate(b->world, spot.at, -1);
         if (n < POINTS) b->anywhere[n] = spot;
@@ -100,35 +93,32 @@ static double measure(const bench *b, question question) {
     return least / b->count / (question == WALKED ? WALK : 1) * 1e9;
 }
 
-static int bench_world(const char *path) {
-    enf_world *world = NULL;
-    int status = cli_open_world(&world, path);
-    if (status) return status;
+static enf_status measure_world(const cli_bench_subject *subject, void *user, enf_error *error) {
+    (void)user;
     bench *b = calloc(1, sizeof *b);
-    enf_error error = {0};
-    if (b) {
-        b->world = world;
-        b->view = enf_world_file(world);
-        b->seed = 1;
-        choose_spots(b);
-        const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-        printf("%-24s %8d %8d %8d", name, (int)b->view->cell_count, (int)b->view->tetrahedron_count,
-               (int)b->view->fine_count);
-        for (int question = 0; question < QUESTIONS && b->count; question++)
-            printf(" %8.0f", measure(b, question));
-        putchar('\n');
-        fflush(stdout);
-    } else {
-        status = cli_fail((enf_fail_memory(&error, "a table"), &error));
-    }
+    if (!b) return enf_fail_memory(error, "a table");
+    b->world = subject->world;
+    b->view = enf_world_file(subject->world);
+    b->seed = 1;
+    choose_spots(b);
+    printf("%-24s %8d %8d %8d", subject->name, (int)b->view->cell_count, (int)b->view->tetrahedron_count,
+           (int)b->view->fine_count);
+    for (int question = 0; question < QUESTIONS && b->count; question++)
+        printf(" %8.0f", measure(b, question));
+    putchar('\n');
     free(b);
-    enf_world_close(world);
-    return status;
+    return ENF_OK;
+}
+
+static void print_head(void *user) {
+    (void)user;
+    printf("%-24s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "world", "cells", "tetra", "fine", "inside",
+           "anywhere", "same", "near", "walked", "step");
 }
 
 int cli_bench_run_locate(int argc, char **argv) {
     cli_option options[] = {{0}};
-    const cli_syntax syntax = {
+    const cli_bench_table table = {
         .command = "enfilade bench run locate",
         .usage = "WORLD.enf ...",
         .summary =
@@ -137,17 +127,7 @@ int cli_bench_run_locate(int argc, char **argv) {
             "away from where the hint is from (near), on that way in 32 steps, each with the hint of the\n"
             "one before (walked), and on it as one step of a moving point (step).",
         .options = options,
-        .operands_min = 1,
-        .operands_max = INT_MAX,
-        .operand = "a world file"};
-    cli_texts operands = {0};
-    int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status < 0) {
-        status = ENF_OK;
-        printf("%-24s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "world", "cells", "tetra", "fine", "inside",
-               "anywhere", "same", "near", "walked", "step");
-        for (int i = 0; i < (int)operands.count && !status; i++) status = bench_world(operands.items[i]);
-    }
-    free(operands.items);
-    return status;
+        .begin = print_head,
+        .measure = measure_world};
+    return cli_bench_run_worlds(&table, argc, argv);
 }

@@ -4,9 +4,8 @@
 // disturbs little.
 #include "base/timer.h"
 #include "cli/bench_run.h"
-#include "cli/cli.h"
-#include "cli/options.h"
-#include "cli/world.h"
+#include "cli/bench_run_worlds.h"
+#include "cli/random.h"
 #include "enfilade/objects.h"
 
 #include <math.h>
@@ -24,7 +23,7 @@ typedef struct swing {
 } swing;
 
 typedef struct bench {
-    enf_world *world;
+    const enf_world *world;
     const enf_file_view *view;
     enf_query *query;
     enf_objects *objects;
@@ -34,13 +33,6 @@ typedef struct bench {
     int inside_count, across_count;
     double cells, triangles; ///< found, per query
 } bench;
-
-static double next_share(uint64_t *seed) { // splitmix64
-    uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
 
 static int compare_doubles(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
@@ -67,14 +59,14 @@ static int32_t cell_count_of(bench *b, const enf_shape *shape, int32_t cell) {
 /// Places in random cells, so large halls do not take them all, that the object is in no other cell at.
 static void choose_inside(bench *b) {
     for (int n = 0; n < TRIES && b->inside_count < PLACES; n++) {
-        int32_t cell = (int32_t)(next_share(&b->seed) * b->view->cell_count);
+        int32_t cell = (int32_t)(cli_random_share(&b->seed) * b->view->cell_count);
         const enf_file_cell *box = &b->view->cells[cell];
         swing *swing = &b->inside[b->inside_count];
         bool usable = true;
         for (int k = 0; k < 2 && usable; k++) {
             swing->shape[k] = (enf_shape){.kind = ENF_SHAPE_SPHERE, .radius = b->radius};
             for (int a = 0; a < 3; a++) {
-                double share = next_share(&b->seed);
+                double share = cli_random_share(&b->seed);
                 swing->shape[k].centre[a] = k ? swing->shape[0].centre[a] + (share - 0.5) * b->radius / 2
                                               : box->box_min[a] + share * (box->box_max[a] - box->box_min[a]);
             }
@@ -91,7 +83,7 @@ static void choose_inside(bench *b) {
 static void choose_across(bench *b) {
     for (int n = 0; n < TRIES && b->across_count < PLACES && b->view->portal_count > 0; n++) {
         const enf_file_portal *portal =
-            &b->view->portals[(int32_t)(next_share(&b->seed) * b->view->portal_count)];
+            &b->view->portals[(int32_t)(cli_random_share(&b->seed) * b->view->portal_count)];
         const enf_file_portal_polygon *polygon = &b->view->portal_polygons[portal->polygon_first];
         swing *swing = &b->across[b->across_count];
         bool usable = true;
@@ -102,7 +94,7 @@ static void choose_across(bench *b) {
                 swing->shape[k].centre[a] =
                     b->view->portal_vertices[polygon->vertex_first][a] / 2 +
                     b->view->portal_vertices[polygon->vertex_first + polygon->vertex_count / 2][a] / 2 +
-                    side * polygon->plane[a] + (next_share(&b->seed) - 0.5) * b->radius / 5;
+                    side * polygon->plane[a] + (cli_random_share(&b->seed) - 0.5) * b->radius / 5;
             usable = usable && enf_world_locate(b->world, swing->shape[k].centre, -1).cell ==
                                    (k ? portal->to : portal->from);
         }
@@ -161,34 +153,43 @@ static void print_row(bench *b, const char *name) {
            b->radius, inside, across, query, triangles, triangle_cells, large, large_cells);
 }
 
-static int measure(const char *path, double radius) {
+/// Makes what the questions need; `radius` 0: one that suits the world.
+static enf_status prepare(bench *b, const enf_world *world, double radius, enf_error *error) {
+    const enf_objects_options options = {
+        .size = sizeof options, .objects_max = PLACES, .links_max = 50 * PLACES};
+    b->world = world;
+    b->view = enf_world_file(world);
+    b->radius = radius > 0 ? radius : choose_radius(b->view);
+    enf_status status = enf_query_create(&b->query, world, NULL, error);
+    return status ? status : enf_objects_create(&b->objects, world, &options, error);
+}
+
+static enf_status measure_world(const cli_bench_subject *subject, void *user, enf_error *error) {
+    const double *radius = user;
     bench *b = calloc(1, sizeof *b);
-    enf_error error = {ENF_OK, ""};
-    if (!b) return cli_fail(&(enf_error){ENF_NO_RESOURCES, "out of memory"});
-    int status = cli_open_world(&b->world, path);
+    if (!b) return enf_fail_memory(error, "a table");
+    enf_status status = prepare(b, subject->world, *radius, error);
     if (!status) {
-        enf_objects_options options = {
-            .size = sizeof options, .objects_max = PLACES, .links_max = 50 * PLACES};
-        b->view = enf_world_file(b->world);
-        b->radius = radius > 0 ? radius : choose_radius(b->view);
-        status = enf_query_create(&b->query, b->world, NULL, &error);
-        if (!status) status = enf_objects_create(&b->objects, b->world, &options, &error);
-        if (status) cli_fail(&error);
-    }
-    if (!status) {
-        const char *name = strrchr(path, '/');
         choose_inside(b);
         choose_across(b);
         if (b->inside_count > 0 && b->across_count > 0)
-            print_row(b, name ? name + 1 : path);
+            print_row(b, subject->name);
         else
-            printf("%-24s no place for objects with a radius of %g\n", name ? name + 1 : path, b->radius);
+            printf("%-24s no place for objects with a radius of %g\n", subject->name, b->radius);
     }
     enf_objects_free(b->objects);
     enf_query_free(b->query);
-    enf_world_close(b->world);
     free(b);
     return status;
+}
+
+static void print_head(void *user) {
+    (void)user;
+    printf("nanoseconds per move inside a cell and across a portal, per sphere query for cells, and with "
+           "triangles,\n"
+           "and per query for cells next to portals with three times the radius\n"
+           "%-24s %7s %8s %9s %9s %9s %9s %7s %9s %6s\n",
+           "world", "cells", "radius", "inside", "across", "cells", "triangles", "found", "large", "found");
 }
 
 int cli_bench_run_objects(int argc, char **argv) {
@@ -198,26 +199,12 @@ int cli_bench_run_objects(int argc, char **argv) {
          "of the objects (default: an eighth of the middle cell's edge)", NULL, false},
         {0},
     };
-    const cli_syntax syntax = {.command = "enfilade bench run objects",
-                               .usage = "WORLD.enf ... [--radius LENGTH]",
-                               .summary = "Times moving objects and sphere queries in compiled worlds.",
-                               .options = options,
-                               .operands_min = 1,
-                               .operands_max = 1000,
-                               .operand = "a world file"};
-    cli_texts operands = {0};
-    int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status >= 0) {
-        free(operands.items);
-        return status;
-    }
-    printf("nanoseconds per move inside a cell and across a portal, per sphere query for cells, and with "
-           "triangles,\n"
-           "and per query for cells next to portals with three times the radius\n"
-           "%-24s %7s %8s %9s %9s %9s %9s %7s %9s %6s\n",
-           "world", "cells", "radius", "inside", "across", "cells", "triangles", "found", "large", "found");
-    status = ENF_OK;
-    for (size_t i = 0; i < operands.count && !status; i++) status = measure(operands.items[i], radius);
-    free(operands.items);
-    return status ? status : cli_finish_output();
+    const cli_bench_table table = {.command = "enfilade bench run objects",
+                                   .usage = "WORLD.enf ... [--radius LENGTH]",
+                                   .summary = "Times moving objects and sphere queries in compiled worlds.",
+                                   .options = options,
+                                   .begin = print_head,
+                                   .measure = measure_world,
+                                   .user = &radius};
+    return cli_bench_run_worlds(&table, argc, argv);
 }

@@ -3,9 +3,7 @@
 // system's cache, as it has been read before. Every number is the least of several runs.
 #include "base/timer.h"
 #include "cli/bench_run.h"
-#include "cli/cli.h"
-#include "cli/options.h"
-#include "cli/world.h"
+#include "cli/bench_run_worlds.h"
 #include "enfilade/run.h"
 
 #include <limits.h>
@@ -46,34 +44,30 @@ static double rate(const file *file, bool mapped, bool skip_checksums) {
     return (double)file->size / measure(file, mapped, skip_checksums, ENF_LOAD_ALL) * 1e-9;
 }
 
-static int bench_world(const char *path) {
-    enf_world *world = NULL;
-    int status = cli_open_world(&world, path);
-    if (status) return status;
-    const enf_file_view *view = enf_world_file(world);
-    file file = {path, malloc(view->size), view->size};
-    if (file.bytes) {
-        memcpy(file.bytes, view->bytes, view->size);
-        const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-        printf("%-24s %8.1f %8.3f %8.2f %8.2f %8.2f %8.2f", name, (double)file.size * 1e-6,
-               measure(&file, true, false, 0) * 1e3, rate(&file, true, false), rate(&file, true, true),
-               rate(&file, false, false), rate(&file, false, true));
-        for (int part = 0; part < PARTS; part++)
-            printf(" %8.2f", measure(&file, false, false, 1u << part) * 1e3);
-        putchar('\n');
-        fflush(stdout);
-    } else {
-        enf_error error = {0};
-        status = cli_fail((enf_fail_memory(&error, "a table"), &error));
-    }
+static enf_status measure_world(const cli_bench_subject *subject, void *user, enf_error *error) {
+    (void)user;
+    const enf_file_view *view = enf_world_file(subject->world);
+    file file = {subject->path, malloc(view->size), view->size};
+    if (!file.bytes) return enf_fail_memory(error, "a table");
+    memcpy(file.bytes, view->bytes, view->size);
+    printf("%-24s %8.1f %8.3f %8.2f %8.2f %8.2f %8.2f", subject->name, (double)file.size * 1e-6,
+           measure(&file, true, false, 0) * 1e3, rate(&file, true, false), rate(&file, true, true),
+           rate(&file, false, false), rate(&file, false, true));
+    for (int part = 0; part < PARTS; part++) printf(" %8.2f", measure(&file, false, false, 1u << part) * 1e3);
+    putchar('\n');
     free(file.bytes);
-    enf_world_close(world);
-    return status;
+    return ENF_OK;
+}
+
+static void print_head(void *user) {
+    (void)user;
+    printf("%-24s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "world", "MB", "lazy", "mapped",
+           "-sums", "memory", "-sums", "cells", "location", "sight", "seen", "draw", "exact");
 }
 
 int cli_bench_run_open(int argc, char **argv) {
     cli_option options[] = {{0}};
-    const cli_syntax syntax = {
+    const cli_bench_table table = {
         .command = "enfilade bench run open",
         .usage = "WORLD.enf ...",
         .summary =
@@ -81,17 +75,7 @@ int cli_bench_run_open(int argc, char **argv) {
             "and in memory, with checksums and without (counts and indices only); milliseconds to open\n"
             "in memory with one part, and with what that needs.",
         .options = options,
-        .operands_min = 1,
-        .operands_max = INT_MAX,
-        .operand = "a world file"};
-    cli_texts operands = {0};
-    int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status < 0) {
-        status = ENF_OK;
-        printf("%-24s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "world", "MB", "lazy", "mapped",
-               "-sums", "memory", "-sums", "cells", "location", "sight", "seen", "draw", "exact");
-        for (int i = 0; i < (int)operands.count && !status; i++) status = bench_world(operands.items[i]);
-    }
-    free(operands.items);
-    return status;
+        .begin = print_head,
+        .measure = measure_world};
+    return cli_bench_run_worlds(&table, argc, argv);
 }

@@ -4,9 +4,8 @@
 // that other work on the machine disturbs little.
 #include "base/timer.h"
 #include "cli/bench_run.h"
-#include "cli/cli.h"
-#include "cli/options.h"
-#include "cli/world.h"
+#include "cli/bench_run_worlds.h"
+#include "cli/random.h"
 #include "enfilade/sound.h"
 
 #include <inttypes.h>
@@ -23,7 +22,7 @@ typedef struct place {
 } place;
 
 typedef struct bench {
-    enf_world *world;
+    const enf_world *world;
     const enf_file_view *view;
     enf_instance *instance;
     enf_paths *table, *plain; ///< with and without a table
@@ -36,15 +35,8 @@ typedef struct bench {
     int found;
 } bench;
 
-static uint64_t next_random(uint64_t *seed) { // splitmix64
-    uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return z ^ z >> 31;
-}
-
 static void choose_place(const bench *b, place *p, uint64_t *seed) {
-    const enf_file_portal *portal = &b->view->portals[next_random(seed) % (uint64_t)b->view->portal_count];
+    const enf_file_portal *portal = &b->view->portals[cli_random(seed) % (uint64_t)b->view->portal_count];
     const enf_file_portal_polygon *polygon = &b->view->portal_polygons[portal->polygon_first];
     p->cell = portal->from;
     for (int a = 0; a < 3; a++)
@@ -189,32 +181,43 @@ static enf_status prepare(bench *b, uint64_t table_size, enf_error *error) {
         choose_place(b, &b->to[i], &seed);
     }
     for (int32_t i = 0; !status && i < b->view->portal_count; i += 2) // one door in a hundred is closed
-        if (next_random(&seed) % 100 == 0)
+        if (cli_random(&seed) % 100 == 0)
             enf_instance_set_door(b->instance, i, &(enf_door){.state = ENF_DOOR_CLOSED}, NULL);
     return status;
 }
 
-static int measure(const char *path, uint64_t table_size) {
-    bench *b = calloc(1, sizeof *b);
-    enf_error error = {ENF_OK, ""};
-    if (!b) return cli_fail(&(enf_error){ENF_NO_RESOURCES, "out of memory"});
-    int status = cli_open_world(&b->world, path);
-    if (!status) {
-        status = prepare(b, table_size, &error);
-        if (status) cli_fail(&error);
-    }
-    const char *name = strrchr(path, '/');
-    if (!status && b->view->portal_count > 0) print_row(b, name ? name + 1 : path);
+static void free_bench(bench *b) {
     enf_path_finder_free(b->finder);
     enf_path_finder_free(b->table_finder);
     enf_paths_free(b->plain);
     enf_paths_free(b->table);
     enf_instance_free(b->instance);
-    enf_world_close(b->world);
     free(b->portals);
     free(b->points);
     free(b);
+}
+
+static enf_status measure_world(const cli_bench_subject *subject, void *user, enf_error *error) {
+    const uint64_t *table_size = user;
+    bench *b = calloc(1, sizeof *b);
+    if (!b) return enf_fail_memory(error, "a table");
+    b->world = subject->world;
+    enf_status status = prepare(b, *table_size, error);
+    if (!status && b->view->portal_count > 0) print_row(b, subject->name);
+    free_bench(b);
     return status;
+}
+
+static void print_head(void *user) {
+    (void)user;
+    printf(
+        "table: MiB, milliseconds to make it; microseconds for the next portal and the length, and for all "
+        "portals;\n"
+        "search: microseconds, portals passed; with 1%% of doors closed; pulling the line, sweeps;\n"
+        "the %d nearest cells; the %d best ways of a sound at most 8 portals away, ways found\n"
+        "%-16s %7s %7s %7s %9s %8s %8s %8s %8s %6s %8s %8s %6s %8s %8s %5s\n",
+        NEAR_CELLS, WAYS, "world", "cells", "junct.", "gates", "MiB", "ms", "next", "all", "search", "passed",
+        "doors", "line", "sweeps", "near", "sound", "ways");
 }
 
 int cli_bench_run_paths(int argc, char **argv) {
@@ -224,29 +227,12 @@ int cli_bench_run_paths(int argc, char **argv) {
          false},
         {0},
     };
-    const cli_syntax syntax = {.command = "enfilade bench run paths",
-                               .usage = "WORLD.enf ... [--table BYTES]",
-                               .summary = "Times paths, lines, near cells and sounds in compiled worlds.",
-                               .options = options,
-                               .operands_min = 1,
-                               .operands_max = 1000,
-                               .operand = "a world file"};
-    cli_texts operands = {0};
-    int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status >= 0) {
-        free(operands.items);
-        return status;
-    }
-    printf(
-        "table: MiB, milliseconds to make it; microseconds for the next portal and the length, and for all "
-        "portals;\n"
-        "search: microseconds, portals passed; with 1%% of doors closed; pulling the line, sweeps;\n"
-        "the %d nearest cells; the %d best ways of a sound at most 8 portals away, ways found\n"
-        "%-16s %7s %7s %7s %9s %8s %8s %8s %8s %6s %8s %8s %6s %8s %8s %5s\n",
-        NEAR_CELLS, WAYS, "world", "cells", "junct.", "gates", "MiB", "ms", "next", "all", "search", "passed",
-        "doors", "line", "sweeps", "near", "sound", "ways");
-    status = ENF_OK;
-    for (size_t i = 0; i < operands.count && !status; i++) status = measure(operands.items[i], table_size);
-    free(operands.items);
-    return status ? status : cli_finish_output();
+    const cli_bench_table table = {.command = "enfilade bench run paths",
+                                   .usage = "WORLD.enf ... [--table BYTES]",
+                                   .summary = "Times paths, lines, near cells and sounds in compiled worlds.",
+                                   .options = options,
+                                   .begin = print_head,
+                                   .measure = measure_world,
+                                   .user = &table_size};
+    return cli_bench_run_worlds(&table, argc, argv);
 }

@@ -3,9 +3,8 @@
 // number is the least of several runs over the same lines, as other work on the machine only adds to it.
 #include "base/timer.h"
 #include "cli/bench_run.h"
-#include "cli/cli.h"
-#include "cli/options.h"
-#include "cli/world.h"
+#include "cli/bench_run_worlds.h"
+#include "cli/random.h"
 #include "enfilade/sight.h"
 
 #include <limits.h>
@@ -34,18 +33,11 @@ typedef struct bench {
     int count[CLASSES];
 } bench;
 
-static double next_share(uint64_t *seed) { // splitmix64
-    uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
 /// A point in a random cell, if it is in one.
 static enf_place choose_point(bench *b, double point[3]) {
-    const enf_file_cell *box = &b->view->cells[(int32_t)(next_share(&b->seed) * b->view->cell_count)];
+    const enf_file_cell *box = &b->view->cells[(int32_t)(cli_random_share(&b->seed) * b->view->cell_count)];
     for (int a = 0; a < 3; a++)
-        point[a] = box->box_min[a] + next_share(&b->seed) * (box->box_max[a] - box->box_min[a]);
+        point[a] = box->box_min[a] + cli_random_share(&b->seed) * (box->box_max[a] - box->box_min[a]);
     return enf_world_locate(b->world, point, -1);
 }
 
@@ -54,7 +46,7 @@ static void choose_line(bench *b) {
     line line = {.query = {.size = sizeof line.query}};
     enf_sight_query *query = &line.query;
     enf_sight sight;
-    double length = 0, share = next_share(&b->seed);
+    double length = 0, share = cli_random_share(&b->seed);
     line.from = choose_point(b, query->from);
     line.to = choose_point(b, query->to);
     if (line.from.cell < 0 || line.to.cell < 0) return;
@@ -132,37 +124,37 @@ static void print_class(const bench *b, const char *name, int class) {
     printf("%-24s %7d %8s %6d", name, (int)b->view->cell_count, range, b->count[class]);
     for (int question = 0; question < QUESTIONS; question++) printf(" %8.0f", measure(b, class, question));
     putchar('\n');
-    fflush(stdout);
 }
 
-static int bench_world(const char *path) {
-    enf_world *world = NULL;
-    int status = cli_open_world(&world, path);
-    if (status) return status;
+static enf_status measure_world(const cli_bench_subject *subject, void *user, enf_error *error) {
+    (void)user;
     bench *b = calloc(1, sizeof *b);
-    enf_error error = {0};
-    if (!b) status = cli_fail((enf_fail_memory(&error, "a table"), &error));
-    if (b && enf_instance_create(&b->doors, world, NULL, &error)) status = cli_fail(&error);
+    if (!b) return enf_fail_memory(error, "a table");
+    enf_status status = enf_instance_create(&b->doors, subject->world, NULL, error);
     if (!status) {
-        b->world = world;
-        b->view = enf_world_file(world);
+        b->world = subject->world;
+        b->view = enf_world_file(subject->world);
         b->seed = 1;
         enf_door open = {.state = ENF_DOOR_OPEN};
         for (int32_t i = 0; i < b->view->portal_count; i += 16)
             enf_instance_set_door(b->doors, i, &open, NULL);
         for (int n = 0; n < TRIES && b->view->cell_count > 0; n++) choose_line(b);
-        const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-        for (int class = 0; class < CLASSES; class ++) print_class(b, name, class);
+        for (int class = 0; class < CLASSES; class ++) print_class(b, subject->name, class);
     }
-    if (b) enf_instance_free(b->doors);
+    enf_instance_free(b->doors);
     free(b);
-    enf_world_close(world);
     return status;
+}
+
+static void print_head(void *user) {
+    (void)user;
+    printf("%-24s %7s %8s %6s %8s %8s %8s %8s %8s\n", "world", "cells", "portals", "lines", "plain",
+           "located", "listed", "doors", "ray");
 }
 
 int cli_bench_run_sight(int argc, char **argv) {
     cli_option options[] = {{0}};
-    const cli_syntax syntax = {
+    const cli_bench_table table = {
         .command = "enfilade bench run sight",
         .usage = "WORLD.enf ...",
         .summary =
@@ -170,17 +162,7 @@ int cli_bench_run_sight(int argc, char **argv) {
             "to be found (located), with the portals listed, with doors to look at, and per ray without\n"
             "end, by the portals passed.",
         .options = options,
-        .operands_min = 1,
-        .operands_max = INT_MAX,
-        .operand = "a world file"};
-    cli_texts operands = {0};
-    int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status < 0) {
-        status = ENF_OK;
-        printf("%-24s %7s %8s %6s %8s %8s %8s %8s %8s\n", "world", "cells", "portals", "lines", "plain",
-               "located", "listed", "doors", "ray");
-        for (int i = 0; i < (int)operands.count && !status; i++) status = bench_world(operands.items[i]);
-    }
-    free(operands.items);
-    return status;
+        .begin = print_head,
+        .measure = measure_world};
+    return cli_bench_run_worlds(&table, argc, argv);
 }

@@ -4,10 +4,9 @@
 #include "base/timer.h"
 #include "cli/bench_folder.h"
 #include "cli/bench_run.h"
-#include "cli/cli.h"
-#include "cli/options.h"
+#include "cli/bench_run_worlds.h"
+#include "cli/random.h"
 #include "cli/view_check.h"
-#include "cli/world.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -40,6 +39,7 @@ static const setting settings[] = {
 enum { SETTING_COUNT = sizeof settings / sizeof *settings };
 
 typedef struct request {
+    double cameras_wanted, rays_wanted, few_wanted; ///< as given
     int cameras, rays, few, seed;
     bool check, talks, stats;
     double seconds;
@@ -63,7 +63,7 @@ static void see(bench *b, int number) {
     memset(b->triangle_marks, 0, (size_t)view->triangle_count);
     for (int n = 0; n < b->request->rays; n++) {
         double d[3], point[3];
-        double x = 2 * view_check_share(&b->check.seed) - 1, y = 2 * view_check_share(&b->check.seed) - 1;
+        double x = 2 * cli_random_share(&b->check.seed) - 1, y = 2 * cli_random_share(&b->check.seed) - 1;
         view_check_direction(look, x, y, d);
         first_hit hit = first_hit_cast(&b->check.scene, look->camera.eye, d, 0);
         if (hit.triangle < 0 || !hit.front) continue;
@@ -245,31 +245,29 @@ static enf_status check_world(bench *b, enf_error *error) {
                " %8" PRId64 " %8" PRId64 " %8d %5d\n",
                b->name, made, check->rays, check->hits, check->backs, check->lost, check->unlisted,
                check->elsewhere + check->seams, check->missed_cells, check->missed_regions, bad, flagged);
-    fflush(stdout);
     for (int i = 0; i < SETTING_COUNT; i++) enf_view_free(views[i]);
     return status;
 }
 
-static int bench_world(const request *request, const char *path) {
-    enf_world *world = NULL;
-    int status = cli_open_world(&world, path);
-    if (status) return status;
-    bench b = {.request = request, .name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path};
-    enf_error error = {0};
-    if (view_check_create(&b.check, world, (uint64_t)request->seed, &error) ||
-        (request->check ? check_world(&b, &error) : make_table(&b, &error)))
-        status = cli_fail(&error);
+static enf_status measure_world(const cli_bench_subject *subject, void *user, enf_error *error) {
+    const request *request = user;
+    bench b = {.request = request, .name = subject->name};
+    enf_status status = view_check_create(&b.check, subject->world, (uint64_t)request->seed, error);
+    if (!status) status = request->check ? check_world(&b, error) : make_table(&b, error);
     view_check_free(&b.check);
     free(b.cameras);
     free(b.cells_seen);
     free(b.triangles_seen);
     free(b.cell_marks);
     free(b.triangle_marks);
-    enf_world_close(world);
     return status;
 }
 
-static void print_head(const request *request) {
+static void begin(void *user) {
+    request *request = user;
+    request->cameras = (int)fmax(1, fmin(request->cameras_wanted, CAMERAS_MOST));
+    request->rays = (int)fmax(1, fmin(request->rays_wanted, 1e7));
+    request->few = (int)fmin(request->few_wanted, 1e9);
     if (request->check)
         printf("%-16s %8s %10s %10s %9s %7s %8s %8s %8s %8s %8s %5s\n", "world", "cameras", "rays", "hits",
                "backs", "lost", "unlisted", "elsewh.", "no cell", "no reg.", "bad cam.", "flags");
@@ -280,20 +278,21 @@ static void print_head(const request *request) {
 }
 
 int cli_bench_run_view(int argc, char **argv) {
-    double cameras = 200, rays = 4000, few = 20;
-    request request = {.seconds = INFINITY, .seed = 1};
+    request request = {
+        .cameras_wanted = 200, .rays_wanted = 4000, .few_wanted = 20, .seconds = INFINITY, .seed = 1};
     cli_option options[] = {
         {"--check", 0, CLI_FLAG, &request.check, NULL, "look for rays that hit what is not listed", NULL,
          false},
-        {"--cameras", 0, CLI_LENGTH, &cameras, "N", "default 200", NULL, false},
-        {"--rays", 0, CLI_LENGTH, &rays, "N", "per camera; default 4000", NULL, false},
-        {"--few", 0, CLI_LENGTH, &few, "N", "cells, of what counts as few; default 20", NULL, false},
+        {"--cameras", 0, CLI_LENGTH, &request.cameras_wanted, "N", "default 200", NULL, false},
+        {"--rays", 0, CLI_LENGTH, &request.rays_wanted, "N", "per camera; default 4000", NULL, false},
+        {"--few", 0, CLI_LENGTH, &request.few_wanted, "N", "cells, of what counts as few; default 20", NULL,
+         false},
         {"--seconds", 0, CLI_SECONDS, &request.seconds, "S", "of --check, at most, per world", NULL, false},
         {"--seed", 0, CLI_COUNT, &request.seed, "N", "of the cameras; default 1", NULL, false},
         {"--talk", 0, CLI_FLAG, &request.talks, NULL, "print each miss", NULL, false},
         {"--stats", 0, CLI_FLAG, &request.stats, NULL, "print what each test spared", NULL, false},
         {0}};
-    const cli_syntax syntax = {
+    const cli_bench_table table = {
         .command = "enfilade bench run view",
         .usage = "[--check] [--cameras N] [--rays N] [--few N] [--seconds S] [--seed N] [--talk] [--stats] "
                  "WORLD.enf ...",
@@ -301,30 +300,17 @@ int cli_bench_run_view(int argc, char **argv) {
             "Median microseconds of a traversal by the shape of regions, from random eyes, tilted: the "
             "first\n"
             "time, after another eye; next, the median of frames while it walks on; both of those cameras\n"
-            "that list few cells. Then cells looked at, cells listed, cells with a triangle that "
-            "rays\n"
-            "hit (the rays find fewer than there are), screens full of regions, and triangles listed and "
-            "hit. With --check: rays from "
-            "eyes\n"
-            "anywhere and on portals whose first hit is in no listed cell, or outside its region; backs: "
-            "rays\n"
-            "that hit a back first, elsewhere: rays that begin behind a wall on which the eye is.",
+            "that list few cells. Then cells looked at, cells listed, cells with a triangle that rays hit "
+            "(the\n"
+            "rays find fewer than there are), screens full of regions, and triangles listed and hit. With\n"
+            "--check: rays from eyes anywhere and on portals whose first hit is in no listed cell, or "
+            "outside\n"
+            "its region. Counted apart: unlisted, whose last cell is in view but has not the triangle in "
+            "its\n"
+            "list; backs, which hit a back first; elsewhere, which begin behind a wall on which the eye is.",
         .options = options,
-        .operands_min = 1,
-        .operands_max = INT_MAX,
-        .operand = "a world file"};
-    cli_texts operands = {0};
-    int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status < 0) {
-        status = ENF_OK;
-        request.cameras = (int)fmax(1, fmin(cameras, CAMERAS_MOST));
-        request.rays = (int)fmax(1, fmin(rays, 1e7));
-        request.few = (int)fmin(few, 1e9);
-        print_head(&request);
-        for (int i = 0; i < (int)operands.count && !status; i++)
-            status = bench_world(&request, operands.items[i]);
-        if (cli_finish_output()) status = ENF_NO_RESOURCES;
-    }
-    free(operands.items);
-    return status;
+        .begin = begin,
+        .measure = measure_world,
+        .user = &request};
+    return cli_bench_run_worlds(&table, argc, argv);
 }

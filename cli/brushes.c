@@ -2,6 +2,7 @@
 #include "cli/brushes.h"
 
 #include "base/array.h"
+#include "cli/random.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -127,14 +128,6 @@ int cli_brushes_side(const cli_brushes *all, const double at[3], double margin) 
     return answer;
 }
 
-static uint64_t next_random(uint64_t *seed) { // splitmix64
-    uint64_t z = *seed += UINT64_C(0x9E3779B97F4A7C15);
-    z = (z ^ z >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
-    z = (z ^ z >> 27) * UINT64_C(0x94D049BB133111EB);
-    return z ^ z >> 31;
-}
-
 void cli_brushes_random_point(const cli_brushes *all, uint64_t *seed, double at[3]) {
-    for (int k = 0; k < 3; k++)
-        at[k] = all->low[k] + (all->high[k] - all->low[k]) * (double)(next_random(seed) >> 11) * 0x1p-53;
+    for (int k = 0; k < 3; k++) at[k] = all->low[k] + (all->high[k] - all->low[k]) * cli_random_share(seed);
 }

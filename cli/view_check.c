@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/view_check.h"
 
+#include "cli/random.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -8,13 +10,6 @@
 #include <string.h>
 
 enum { TIES = 32, TRIES = 200 };
-
-double view_check_share(uint64_t *seed) { // splitmix64
-    uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
 
 static double reach(const enf_file_view *view) {
     double most = 0;
@@ -61,7 +56,7 @@ static void random_direction(uint64_t *seed, double direction[3]) {
     do {
         square = 0;
         for (int a = 0; a < 3; a++) {
-            direction[a] = 2 * view_check_share(seed) - 1;
+            direction[a] = 2 * cli_random_share(seed) - 1;
             square += direction[a] * direction[a];
         }
     } while (square > 1 || square < 0.01);
@@ -99,11 +94,11 @@ bool view_check_random(view_check *check, check_camera *look) {
     const enf_file_view *view = check->view;
     for (int n = 0; n < TRIES && view->cell_count > 0; n++) {
         const enf_file_cell *cell =
-            &view->cells[(int32_t)(view_check_share(&check->seed) * view->cell_count)];
+            &view->cells[(int32_t)(cli_random_share(&check->seed) * view->cell_count)];
         double eye[3];
         for (int a = 0; a < 3; a++)
             eye[a] =
-                cell->box_min[a] + view_check_share(&check->seed) * (cell->box_max[a] - cell->box_min[a]);
+                cell->box_min[a] + cli_random_share(&check->seed) * (cell->box_max[a] - cell->box_min[a]);
         if (view_check_look(check, eye, look)) return true;
     }
     return false;
@@ -113,18 +108,18 @@ bool view_check_on_portal(view_check *check, int kind, check_camera *look) {
     const enf_file_view *view = check->view;
     if (view->portal_polygon_count == 0) return false;
     const enf_file_portal_polygon *polygon =
-        &view->portal_polygons[(int32_t)(view_check_share(&check->seed) * view->portal_polygon_count)];
+        &view->portal_polygons[(int32_t)(cli_random_share(&check->seed) * view->portal_polygon_count)];
     const double(*v)[3] = view->portal_vertices + polygon->vertex_first;
-    int32_t i = (int32_t)(view_check_share(&check->seed) * polygon->vertex_count);
+    int32_t i = (int32_t)(cli_random_share(&check->seed) * polygon->vertex_count);
     int32_t j = (i + 1) % polygon->vertex_count, k = (i + 2) % polygon->vertex_count;
-    double s = kind == 0 || kind == 3 ? 0 : view_check_share(&check->seed);
-    double t = kind == 2 || kind == 4 ? view_check_share(&check->seed) * (1 - s) : 0;
+    double s = kind == 0 || kind == 3 ? 0 : cli_random_share(&check->seed);
+    double t = kind == 2 || kind == 4 ? cli_random_share(&check->seed) * (1 - s) : 0;
     double eye[3], away[3];
     random_direction(&check->seed, away);
     for (int a = 0; a < 3; a++) {
         eye[a] = v[i][a] + s * (v[j][a] - v[i][a]) + t * (v[k][a] - v[i][a]);
         if (kind >= 3)
-            eye[a] += away[a] * pow(10, -2 - 12 * view_check_share(&check->seed)) * 0.01 * reach(view);
+            eye[a] += away[a] * pow(10, -2 - 12 * cli_random_share(&check->seed)) * 0.01 * reach(view);
     }
     return view_check_look(check, eye, look);
 }
@@ -224,7 +219,7 @@ int64_t view_check_rays(view_check *check, const check_camera *look, const enf_v
     int64_t before = check->missed_cells + check->missed_regions;
     double least = 1e-12 * reach(check->view);
     for (int n = 0; n < rays; n++) {
-        double x = 2 * view_check_share(&check->seed) - 1, y = 2 * view_check_share(&check->seed) - 1, d[3];
+        double x = 2 * cli_random_share(&check->seed) - 1, y = 2 * cli_random_share(&check->seed) - 1, d[3];
         view_check_direction(look, x, y, d);
         first_hit hit = first_hit_cast(&check->scene, look->camera.eye, d, least);
         check->rays++;

@@ -239,6 +239,11 @@ static void grids_agree_with_floyd(void **state) {
 
 enum { SAMPLES = 64, ROUNDS = 28 };
 
+/// How much longer than by samples a line may be, as a share. Through portals that are not convex a pulled
+/// line is only the best of its neighbours: 0.9 % was the worst seen.
+#define CONVEX_SLACK 1e-4
+#define LOCAL_SLACK 2e-2
+
 /// Samples of a portal about a point: on rings up to a radius, moved onto the portal.
 static int take_samples(const bench *b, int32_t portal, const double about[3], double radius,
                         double (*samples)[3]) {
@@ -352,7 +357,7 @@ static void check_line(const bench *b, const enf_path_query *query, const enf_pa
     assert_true(fabs(sum - path->line_length) <= tolerance);
     assert_true(path->line_length <= path->length + tolerance);
     double reference = length_by_samples(b, query, path);
-    double slack = is_convex(b, query->portals, path->portal_count) ? 1e-4 : 2e-2;
+    double slack = is_convex(b, query->portals, path->portal_count) ? CONVEX_SLACK : LOCAL_SLACK;
     if (!(path->line_length <= reference * (1 + slack)))
         fail_msg("%d portals: %.17g long, by samples %.17g", path->portal_count, path->line_length,
                  reference);

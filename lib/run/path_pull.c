@@ -144,7 +144,8 @@ static bool loosen_from(const enf_path_line *line, const knot *k, int32_t member
     const double(*corner)[3] = line->paths->view->portal_vertices + polygon->vertex_first;
     const double *before = line->points[k->first - 1], *behind = line->points[k->first + k->count];
     bool moved = false;
-    for (int32_t i = 0, last = polygon->vertex_count - 1; i<polygon->vertex_count && * tries> 0; last = i++) {
+    for (int32_t i = 0, last = polygon->vertex_count - 1; i < polygon->vertex_count; last = i++) {
+        if (*tries == 0) break;
         const double *at = line->points[k->first + member];
         double best[3], foot[3];
         enf_edge_between(corner[last], corner[i], at, at, foot);
