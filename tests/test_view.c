@@ -4,7 +4,7 @@
 #include "view_scene.h"
 
 #include "run/instance.h"
-#include "run/view_clip.h"
+#include "run/view_lens.h"
 
 #include <inttypes.h>
 #include <math.h>
