@@ -3,8 +3,8 @@
 // Nonsense in the file, and capacities that run out, end quickly and are reported.
 #include "view_scene.h"
 
+#include "run/affine.h"
 #include "run/instance.h"
-#include "run/view_lens.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "enfilade/sight.h"
 
+#include "run/affine.h"
 #include "run/way.h"
 
 #include <math.h>
@@ -10,15 +11,7 @@ enum { DEPTH_DEFAULT = 16 };
 
 static void take_matrix(double matrix[12], const double next[12]) {
     double product[12];
-    for (int column = 0; column < 4; column++) {
-        const double from[3] = {matrix[column], matrix[4 + column], matrix[8 + column]};
-        double to[3];
-        if (column < 3)
-            enf_transform_direction(next, from, to);
-        else
-            enf_transform_point(next, from, to);
-        for (int a = 0; a < 3; a++) product[4 * a + column] = to[a];
-    }
+    enf_affine_multiply(product, next, matrix);
     memcpy(matrix, product, sizeof product);
 }
 
@@ -55,8 +48,8 @@ static bool follow_leg(const enf_world *world, enf_way *way, const enf_step *ste
     }
     stepped->depth++;
     take_matrix(stepped->matrix, end.passage.matrix);
-    enf_transform_point(end.passage.matrix, from, from);
-    enf_transform_point(end.passage.matrix, to, to);
+    enf_affine_point(end.passage.matrix, from, from);
+    enf_affine_point(end.passage.matrix, to, to);
     memcpy(stepped->point, to, sizeof stepped->point);
     int32_t region = way->view->cells[end.passage.to].region;
     stepped->place =

@@ -7,8 +7,9 @@
 #include "run/instance.h"
 
 #include "base/options.h"
+#include "run/affine.h"
 #include "run/open.h"
-
+#include "run/vector.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -66,12 +67,6 @@ void enf_instance_free(enf_instance *instance) {
     free(instance);
 }
 
-static bool is_finite(const double *numbers, int count) {
-    for (int i = 0; i < count; i++)
-        if (!isfinite(numbers[i])) return false;
-    return true;
-}
-
 static enf_status check_portal(const enf_instance *instance, int32_t portal, enf_error *error) {
     if (portal >= 0 && portal < instance->view->portal_count) return ENF_OK;
     return enf_fail(error, ENF_BAD_USAGE, "portal %ld: the world has portals 0 to %ld", (long)portal,
@@ -86,7 +81,7 @@ enf_status enf_instance_set_door(enf_instance *instance, int32_t portal, const e
     bool partly = set->state == ENF_DOOR_PARTLY;
     if ((unsigned)set->state > ENF_DOOR_PARTLY)
         return enf_fail(error, ENF_BAD_USAGE, "a door's state is open, closed or partly open");
-    if (partly && (!is_finite(plane, 4) || (plane[0] == 0 && plane[1] == 0 && plane[2] == 0)))
+    if (partly && (!enf_are_finite(plane, 4) || (plane[0] == 0 && plane[1] == 0 && plane[2] == 0)))
         return enf_fail(error, ENF_BAD_USAGE, "a door that is partly open needs a plane with a direction");
     door *door = &instance->doors[portal / 2];
     atomic_store_explicit(&instance->touched, true, memory_order_release);
@@ -118,12 +113,6 @@ static enf_door read_door(const door *door) {
 enf_door enf_instance_get_door(const enf_instance *instance, int32_t portal) {
     if (check_portal(instance, portal, NULL)) return (enf_door){0};
     return read_door(&instance->doors[portal / 2]);
-}
-
-/// That of the linear part.
-static double determinant(const double m[12]) {
-    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
-           m[2] * (m[4] * m[9] - m[5] * m[8]);
 }
 
 /// Takes a portal into the list of those that transform, or out of it.
@@ -167,7 +156,7 @@ enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, in
     if (to < 0 || to >= instance->view->cell_count)
         return enf_fail(error, ENF_BAD_USAGE, "cell %ld: the world has cells 0 to %ld", (long)to,
                         (long)instance->view->cell_count - 1);
-    double volume = is_finite(matrix, 12) ? determinant(matrix) : 0;
+    double volume = enf_are_finite(matrix, 12) ? enf_affine_determinant(matrix) : 0;
     if (volume == 0 || !isfinite(volume))
         return enf_fail(error, ENF_BAD_USAGE, "a transform must be finite and have an inverse");
     if (!reserve_transform(instance, portal)) return enf_fail_memory(error, "a transform");

@@ -5,6 +5,7 @@
 // s^2) over the steps d instead, with s shrinking: that is smooth, and points drag each other along.
 #include "run/path_pull.h"
 
+#include "run/affine.h"
 #include "run/portal_shape.h"
 #include "run/vector.h"
 
@@ -22,12 +23,6 @@ static const double *matrix_of(const enf_path_line *line, int32_t portal) {
     return enf_instance_passage(line->instance, line->paths->view, portal).matrix;
 }
 
-static void transform(const double m[12], const double point[3], double moved[3]) {
-    double at[3];
-    for (int a = 0; a < 3; a++) at[a] = enf_dot(m + 4 * a, point) + m[4 * a + 3];
-    memcpy(moved, at, sizeof at);
-}
-
 /// Solves m * point = moved.
 static void transform_back(const double m[12], const double moved[3], double point[3]) {
     double column[4][3], across[3][3];
@@ -36,10 +31,6 @@ static void transform_back(const double m[12], const double moved[3], double poi
     for (int k = 0; k < 3; k++) enf_cross(column[(k + 1) % 3], column[(k + 2) % 3], across[k]);
     double volume = enf_dot(column[0], across[0]);
     for (int k = 0; k < 3; k++) point[k] = enf_dot(across[k], column[3]) / volume;
-}
-
-static bool is_finite(const double point[3]) {
-    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
 }
 
 int32_t enf_path_line_size(const enf_path_line *line) {
@@ -76,10 +67,10 @@ static double move_point(const enf_path_line *line, int32_t at, int32_t portal, 
     const double *before = line->points[at - 1];
     bool found = smooth > 0 ? find_smooth(line, portal, point, before, behind, smooth, best)
                             : enf_portal_between(line->paths->view, portal, before, behind, best);
-    if (!found || !is_finite(best)) return 0;
+    if (!found || !enf_are_finite(best, 3)) return 0;
     double moved = enf_distance(point, best);
     memcpy(point, best, sizeof best);
-    if (matrix) transform(matrix, point, line->points[at + 1]);
+    if (matrix) enf_affine_point(matrix, point, line->points[at + 1]);
     return moved;
 }
 
@@ -105,7 +96,7 @@ static void begin(const enf_path_line *line, const double from[3], const double 
         const double *place = enf_path_place(line->paths, line->portals[i]);
         for (int a = 0; a < 3; a++) line->points[at][a] = place[a] / line->paths->unit;
         at++;
-        if (matrix) transform(matrix, line->points[at - 1], line->points[at]);
+        if (matrix) enf_affine_point(matrix, line->points[at - 1], line->points[at]);
         if (matrix) at++;
     }
     memcpy(line->points[at], to, sizeof *line->points);

@@ -4,6 +4,7 @@
 #include "enfilade/sight.h"
 
 #include "format/frame.h"
+#include "run/affine.h"
 #include "run/walk.h"
 #include "run/way.h"
 
@@ -127,8 +128,8 @@ static bool pass_transform(caster *c, const enf_way_end *end) {
     }
     hit->depth++;
     hit->cell = end->passage.to;
-    enf_transform_point(end->passage.matrix, hit->point, hit->point);
-    enf_transform_direction(end->passage.matrix, hit->direction, hit->direction);
+    enf_affine_point(end->passage.matrix, hit->point, hit->point);
+    enf_affine_direction(end->passage.matrix, hit->direction, hit->direction);
     return true;
 }
 

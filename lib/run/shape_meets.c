@@ -6,21 +6,12 @@
 // clipping", 1974). Comparisons are written so that what is not a number counts as near.
 #include "run/shape.h"
 
+#include "run/vector.h"
+
 #include <math.h>
 #include <string.h>
 
 #define CORNERS_MAX 32 // of the clipped polygon; clips that would make more are left out: it stays too large
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        int k = (i + 1) % 3, l = (i + 2) % 3;
-        out[i] = a[k] * b[l] - a[l] * b[k];
-    }
-}
 
 static double square_to_segment(const double point[3], const double from[3], const double to[3]) {
     double along[3], off[3], square = 0;
@@ -28,14 +19,14 @@ static double square_to_segment(const double point[3], const double from[3], con
         along[a] = to[a] - from[a];
         off[a] = point[a] - from[a];
     }
-    double length = dot(along, along), share = length > 0 ? dot(along, off) / length : 0;
+    double length = enf_dot(along, along), share = length > 0 ? enf_dot(along, off) / length : 0;
     share = share > 0 ? (share < 1 ? share : 1) : 0;
     for (int a = 0; a < 3; a++) square += (off[a] - share * along[a]) * (off[a] - share * along[a]);
     return square;
 }
 
 static double height_above(const double plane[4], const double point[3]) {
-    return dot(plane, point) + plane[3];
+    return enf_dot(plane, point) + plane[3];
 }
 
 /// Where the line between two points crosses a plane that has them on different sides.
@@ -85,11 +76,11 @@ static bool foot_is_open(const double centre[3], double height, const enf_face *
 
 static bool sphere_meets(const double centre[3], double radius, const enf_face *face, double slack) {
     double off[3], limit = radius + slack;
-    double cut_slack = face->cut ? slack * sqrt(dot(face->cut, face->cut)) : 0;
+    double cut_slack = face->cut ? slack * sqrt(enf_dot(face->cut, face->cut)) : 0;
     edges edges = {.nearest = INFINITY};
     memcpy(edges.at, centre, sizeof edges.at);
     for (int a = 0; a < 3; a++) off[a] = centre[a] - face->vertices[0][a];
-    double height = dot(face->normal, off);
+    double height = enf_dot(face->normal, off);
     if (fabs(height) > limit) return false;
     bool inside = !is_zero(face->normal) && (!face->cut || foot_is_open(centre, height, face, cut_slack));
     for (int32_t i = 0; i < face->count; i++) {
@@ -99,8 +90,8 @@ static bool sphere_meets(const double centre[3], double radius, const enf_face *
             edge[a] = to[a] - from[a];
             off[a] = centre[a] - from[a];
         }
-        cross(face->normal, edge, inwards);
-        inside = inside && !(dot(inwards, off) < 0);
+        enf_cross(face->normal, edge, inwards);
+        inside = inside && !(enf_dot(inwards, off) < 0);
         if (face->cut)
             take_cut_edge(&edges, from, to, face->cut, cut_slack);
         else
@@ -138,10 +129,10 @@ static void make_square(clipped *square, const double normal[3], double half) {
         if (fabs(normal[a]) < fabs(normal[least])) least = a;
     double axis[3] = {0}, u[3], v[3];
     axis[least] = 1;
-    cross(normal, axis, u);
-    double length = sqrt(dot(u, u));
+    enf_cross(normal, axis, u);
+    double length = sqrt(enf_dot(u, u));
     for (int a = 0; a < 3; a++) u[a] /= length;
-    cross(normal, u, v);
+    enf_cross(normal, u, v);
     square->count = 4;
     for (int i = 0; i < 4; i++)
         for (int a = 0; a < 3; a++)
@@ -169,7 +160,7 @@ static bool plane_meets(const enf_shape *box, const enf_face *face, double slack
         off[a] = face->vertices[0][a] - box->centre[a];
         reach += fabs(face->normal[a]) * box->half[a];
     }
-    *height = dot(face->normal, off);
+    *height = enf_dot(face->normal, off);
     return !(fabs(*height) > reach);
 }
 
@@ -190,7 +181,7 @@ static void clip_by_box(clipped *left, const enf_shape *box, const double normal
 
 static void clip_by_cut(clipped *left, const enf_shape *box, const double cut[4], double slack) {
     const double plane[4] = {cut[0], cut[1], cut[2], height_above(cut, box->centre)};
-    clip(left, plane, slack * sqrt(dot(cut, cut)));
+    clip(left, plane, slack * sqrt(enf_dot(cut, cut)));
 }
 
 static void clip_by_edges(clipped *left, const enf_shape *box, const enf_face *face, double slack) {
@@ -201,9 +192,9 @@ static void clip_by_edges(clipped *left, const enf_shape *box, const enf_face *f
             edge[a] = to[a] - from[a];
             off[a] = from[a] - box->centre[a];
         }
-        cross(face->normal, edge, plane);
-        plane[3] = -dot(plane, off);
-        clip(left, plane, slack * sqrt(dot(edge, edge)));
+        enf_cross(face->normal, edge, plane);
+        plane[3] = -enf_dot(plane, off);
+        clip(left, plane, slack * sqrt(enf_dot(edge, edge)));
     }
 }
 

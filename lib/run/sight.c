@@ -3,6 +3,7 @@
 // matter for that, and is only found out if somebody wants to know.
 #include "enfilade/sight.h"
 
+#include "run/vector.h"
 #include "run/walk.h"
 #include "run/way.h"
 
@@ -33,10 +34,6 @@ static bool pass_portals(const enf_way *way, const enf_sight_query *query, enf_s
     return end.outcome == ENF_WAY_FREE;
 }
 
-static bool is_finite(const double point[3]) {
-    return isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
-}
-
 /// Finds both ends. False if one is in no cell.
 static bool find_ends(const enf_world *world, const enf_sight_query *query, enf_sight *sight) {
     sight->from = query->from_place ? *query->from_place : enf_world_locate(world, query->from, -1);
@@ -46,7 +43,8 @@ static bool find_ends(const enf_world *world, const enf_sight_query *query, enf_
         sight->to = enf_world_locate(world, query->to, -1);
     const enf_file_view *view = enf_world_file(world);
     return sight->from.cell >= 0 && sight->to.cell >= 0 && sight->from.cell < view->cell_count &&
-           sight->to.cell < view->cell_count && is_finite(query->from) && is_finite(query->to);
+           sight->to.cell < view->cell_count && enf_are_finite(query->from, 3) &&
+           enf_are_finite(query->to, 3);
 }
 
 enf_status enf_sight_between(const enf_world *world, const enf_instance *instance,

@@ -19,14 +19,6 @@ bool enf_lens_make(enf_view_lens *lens, const double eye[3], const double rows[3
 bool enf_lens_pass(enf_view_lens *behind, const enf_view_lens *before, const double matrix[12],
                    const double inverse[12]);
 
-/// product = a * b, of affine 3 x 4 matrices.
-void enf_affine_multiply(double product[12], const double a[12], const double b[12]);
-
-/// False if there is no finite one.
-bool enf_affine_invert(double inverse[12], const double matrix[12]);
-
-double enf_affine_determinant(const double matrix[12]);
-
 static inline void enf_lens_project(const enf_view_lens *lens, const double point[3], double clip[3]) {
     double x = point[0] - lens->eye[0], y = point[1] - lens->eye[1], z = point[2] - lens->eye[2];
     for (int i = 0; i < 3; i++) clip[i] = lens->rows[i][0] * x + lens->rows[i][1] * y + lens->rows[i][2] * z;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "run/view_space.h"
 
+#include "run/affine.h"
+
 #include <math.h>
 #include <string.h>
 

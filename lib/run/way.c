@@ -105,14 +105,3 @@ enf_status enf_fail_sight(const enf_world *world, enf_error *error) {
     return enf_fail(error, ENF_BAD_INPUT,
                     "the world file has no part for lines of sight; compile the world again");
 }
-
-void enf_transform_point(const double matrix[12], const double point[3], double moved[3]) {
-    enf_transform_direction(matrix, point, moved);
-    for (int a = 0; a < 3; a++) moved[a] += matrix[4 * a + 3];
-}
-
-void enf_transform_direction(const double matrix[12], const double direction[3], double turned[3]) {
-    const double d[3] = {direction[0], direction[1], direction[2]};
-    for (int a = 0; a < 3; a++)
-        turned[a] = matrix[4 * a] * d[0] + matrix[4 * a + 1] * d[1] + matrix[4 * a + 2] * d[2];
-}

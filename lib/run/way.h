@@ -54,10 +54,4 @@ void enf_way_point(const enf_way *way, double share, double point[3]);
 /// In words: ENF_BAD_INPUT if the file has no sight part, ENF_BAD_USAGE if it is not loaded.
 enf_status enf_fail_sight(const enf_world *world, enf_error *error);
 
-/// matrix (3 x 4) times a point.
-void enf_transform_point(const double matrix[12], const double point[3], double moved[3]);
-
-/// The same for a direction.
-void enf_transform_direction(const double matrix[12], const double direction[3], double turned[3]);
-
 #endif
