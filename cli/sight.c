@@ -47,7 +47,8 @@ int cli_sight(int argc, char **argv) {
     if (status < 0) status = cli_open_world(&world, operands.items[0]);
     if (world) {
         sighting s = {world, -1};
-        status = cli_read_numbers(6, "pair of points; write six finite numbers 'x y z  x y z'", answer_line, &s);
+        status =
+            cli_read_numbers(6, "pair of points; write six finite numbers 'x y z  x y z'", answer_line, &s);
     }
     enf_world_close(world);
     free(operands.items);
