@@ -223,6 +223,7 @@ static bool join_pieces(enf_air_parts *air, slicer *slicer, int32_t cell_count) 
     enf_bodies *parts = &air->bodies;
     size_t pieces = (size_t)slicer->piece_count;
     size_t leafs = (size_t)slicer->tree->leaf_count;
+    parts->owner_count = cell_count;
     air->leaf_of = enf_array_new(leafs, sizeof *air->leaf_of);
     parts->cell_first = enf_array_new(leafs + 1, sizeof *parts->cell_first);
     parts->owner = enf_array_new(pieces, sizeof *parts->owner);
@@ -262,7 +263,7 @@ enf_status enf_air_parts_make(enf_air_parts *air, const enf_air_tree *tree, cons
     if (good) {
         qsort(slicer.pieces, (size_t)slicer.piece_count, sizeof *slicer.pieces, compare_pieces);
         drop_thin(&slicer);
-        good = join_pieces(air, &slicer, view->cell_count) && enf_bodies_find_boxes(&air->bodies);
+        good = join_pieces(air, &slicer, view->cell_count) && enf_bodies_finish(&air->bodies);
     }
     free(slicer.stack);
     free(slicer.cap);

@@ -33,7 +33,7 @@ typedef struct source {
     int32_t portal; ///< -1: a body
     enf_body body;
     const enf_bodies *bodies; ///< asked for; or null
-    uint64_t *met;            ///< a row of those
+    uint64_t *met;            ///< a row of their owners
 } source;
 
 typedef struct waiting {
@@ -102,11 +102,11 @@ static bool is_nearer(const enf_beams *beams, const waiting *a, const waiting *b
     return (a->portal & 1) < (b->portal & 1);
 }
 
-/// Are there bodies in a cell that have not been met?
+/// Are there bodies in a cell whose owners have not been met?
 static bool has_bodies(const source *source, int32_t cell) {
     const enf_bodies *bodies = source->bodies;
     for (int32_t k = bodies->cell_first[cell]; k < bodies->cell_first[cell + 1]; k++)
-        if (!enf_bit_get(source->met, k)) return true;
+        if (!enf_bit_get(source->met, bodies->owner[k])) return true;
     return false;
 }
 
@@ -227,19 +227,19 @@ static void find_separators(enf_beams *beams, int32_t via) {
     }
 }
 
-/// Notes the bodies in the cell behind a portal that the separators leave something of.
+/// Notes the owners of bodies in the cell behind a portal that the separators leave something of.
 static void meet_bodies(enf_beams *beams, int32_t via, bool *ready) {
     const enf_bodies *bodies = beams->source.bodies;
     int32_t cell = enf_portal_to(beams->shapes->graph, via);
     for (int32_t body = bodies->cell_first[cell]; body < bodies->cell_first[cell + 1]; body++) {
-        if (enf_bit_get(beams->source.met, body)) continue;
+        if (enf_bit_get(beams->source.met, bodies->owner[body])) continue;
         if (!*ready) find_separators(beams, via);
         *ready = true;
         int32_t first = bodies->corner_first[body];
         if (enf_separators_meet(&beams->separators, bodies->middle[body], bodies->half[body],
                                 (const double(*)[3])(bodies->corners + first),
                                 bodies->corner_first[body + 1] - first))
-            enf_bit_set(beams->source.met, body);
+            enf_bit_set(beams->source.met, bodies->owner[body]);
     }
 }
 
@@ -285,23 +285,36 @@ int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals
     return beams->reached_count;
 }
 
-void enf_beams_cast_body(enf_beams *beams, const enf_bodies *bodies, int32_t cell, int32_t body,
-                         uint64_t *met) {
+/// From a cell out of all its portals.
+static void leave(enf_beams *beams, int32_t cell) {
     const enf_portal_graph *graph = beams->shapes->graph;
-    begin(beams);
-    beams->source.portal = -1;
-    beams->source.bodies = bodies;
-    beams->source.met = met;
-    int32_t first = bodies->corner_first[body];
-    enf_body_make(&beams->source.body, (const double(*)[3])(bodies->corners + first),
-                  bodies->corner_first[body + 1] - first, beams->shapes->tolerance / 8);
-    memset(beams->open, 0, beams->facing->row_words * sizeof *beams->open);
-    for (int32_t k = bodies->cell_first[cell]; k < bodies->cell_first[cell + 1]; k++) enf_bit_set(met, k);
+    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
+        reach(beams, graph->cell_portals[k], ENF_REMAINS_WHOLE);
+}
+
+/// What can be seen through the portals of a cell, and who has bodies there.
+static void open_cell(enf_beams *beams, int32_t cell) {
+    const enf_portal_graph *graph = beams->shapes->graph;
+    const source *source = &beams->source;
+    for (int32_t k = source->bodies->cell_first[cell]; k < source->bodies->cell_first[cell + 1]; k++)
+        enf_bit_set(source->met, source->bodies->owner[k]);
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
         const uint64_t *row = enf_bits_row(beams->facing, graph->cell_portals[k]);
         for (size_t w = 0; w < beams->facing->row_words; w++) beams->open[w] |= row[w];
     }
-    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++)
-        reach(beams, graph->cell_portals[k], ENF_REMAINS_WHOLE);
+}
+
+void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met) {
+    const int32_t *first = &bodies->owner_first[owner], whole = bodies->whole_first[owner];
+    begin(beams);
+    if (first[0] == first[1]) return;
+    beams->source.portal = -1;
+    beams->source.bodies = bodies;
+    beams->source.met = met;
+    enf_body_make(&beams->source.body, (const double(*)[3])(bodies->wholes + whole),
+                  bodies->whole_first[owner + 1] - whole, beams->shapes->tolerance / 8);
+    memset(beams->open, 0, beams->facing->row_words * sizeof *beams->open);
+    for (int32_t k = first[0]; k < first[1]; k++) open_cell(beams, bodies->cells[k]);
+    for (int32_t k = first[0]; k < first[1]; k++) leave(beams, bodies->cells[k]);
     spread_all(beams);
 }

@@ -27,10 +27,10 @@ void enf_beams_free(enf_beams *beams);
 /// they were reached first; returns how many. Valid until the next call.
 int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals);
 
-/// Casts the beams of one of the bodies, through all portals of its cell. In *met, a row of bits that was
-/// zero, those of the bodies are set that the beams meet, and those in its own cell.
-void enf_beams_cast_body(enf_beams *beams, const enf_bodies *bodies, int32_t cell, int32_t body,
-                         uint64_t *met);
+/// Casts the beams of all bodies of an owner at once, as of their hull, through all portals of their cells.
+/// In *met, a row of bits that was zero, those owners are set whose bodies the beams meet, and those with
+/// bodies in the same cells.
+void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met);
 
 /// What they reach of one of these portals.
 void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window);

@@ -5,11 +5,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// For what rounding takes off a box.
 static const double rounding = 0x1p-50;
 
-bool enf_bodies_find_boxes(enf_bodies *bodies) {
+static bool find_boxes(enf_bodies *bodies) {
     bodies->middle = enf_array_new((size_t)bodies->count, sizeof *bodies->middle);
     bodies->half = enf_array_new((size_t)bodies->count, sizeof *bodies->half);
     if (!bodies->middle || !bodies->half) return false;
@@ -26,6 +27,79 @@ bool enf_bodies_find_boxes(enf_bodies *bodies) {
     return true;
 }
 
+static int compare_points(const void *a, const void *b) {
+    return memcmp(a, b, 3 * sizeof(double));
+}
+
+/// Each once; returns how many are left.
+static int32_t drop_doubles(double (*points)[3], int32_t count) {
+    int32_t kept = 0;
+    qsort(points, (size_t)count, sizeof *points, compare_points);
+    for (int32_t i = 0; i < count; i++)
+        if (i == 0 || compare_points(points[i], points[kept - 1]) != 0)
+            memmove(points[kept++], points[i], sizeof *points);
+    return kept;
+}
+
+/// Turns counts of entries 0..count-1 into offsets.
+static void sum_up(int32_t *first, int32_t count) {
+    int32_t sum = 0;
+    for (int32_t i = 0; i <= count; i++) {
+        int32_t own = i < count ? first[i] : 0;
+        first[i] = sum;
+        sum += own;
+    }
+}
+
+/// Offsets moved on as far as each entry is full are the next entries' now.
+static void move_back(int32_t *first, int32_t count) {
+    memmove(first + 1, first, (size_t)count * sizeof *first);
+    first[0] = 0;
+}
+
+static bool find_owners(enf_bodies *bodies) {
+    const size_t owners = (size_t)bodies->owner_count + 1;
+    int32_t *first = bodies->owner_first = enf_array_zeroed(owners, sizeof *first);
+    int32_t *whole = bodies->whole_first = enf_array_zeroed(owners, sizeof *whole);
+    bodies->cells = enf_array_new((size_t)bodies->count, sizeof *bodies->cells);
+    bodies->wholes = enf_array_new((size_t)bodies->corner_first[bodies->count], sizeof *bodies->wholes);
+    if (!first || !whole || !bodies->cells || !bodies->wholes) return false;
+    for (int32_t b = 0; b < bodies->count; b++) {
+        first[bodies->owner[b]]++;
+        whole[bodies->owner[b]] += bodies->corner_first[b + 1] - bodies->corner_first[b];
+    }
+    sum_up(first, bodies->owner_count);
+    sum_up(whole, bodies->owner_count);
+    for (int32_t cell = 0; cell < bodies->cell_count; cell++)
+        for (int32_t b = bodies->cell_first[cell]; b < bodies->cell_first[cell + 1]; b++) {
+            const int32_t owner = bodies->owner[b];
+            bodies->cells[first[owner]++] = cell;
+            for (int32_t i = bodies->corner_first[b]; i < bodies->corner_first[b + 1]; i++)
+                memcpy(bodies->wholes[whole[owner]++], bodies->corners[i], sizeof *bodies->wholes);
+        }
+    move_back(first, bodies->owner_count);
+    move_back(whole, bodies->owner_count);
+    return true;
+}
+
+static void drop_all_doubles(enf_bodies *bodies) {
+    int32_t kept = 0;
+    for (int32_t o = 0; o < bodies->owner_count; o++) {
+        const int32_t first = bodies->whole_first[o];
+        const int32_t count = drop_doubles(bodies->wholes + first, bodies->whole_first[o + 1] - first);
+        memmove(bodies->wholes + kept, bodies->wholes + first, (size_t)count * sizeof *bodies->wholes);
+        bodies->whole_first[o] = kept;
+        kept += count;
+    }
+    bodies->whole_first[bodies->owner_count] = kept;
+}
+
+bool enf_bodies_finish(enf_bodies *bodies) {
+    if (!find_boxes(bodies) || !find_owners(bodies)) return false;
+    drop_all_doubles(bodies);
+    return true;
+}
+
 void enf_bodies_free(enf_bodies *bodies) {
     free(bodies->cell_first);
     free(bodies->owner);
@@ -33,5 +107,9 @@ void enf_bodies_free(enf_bodies *bodies) {
     free(bodies->corners);
     free(bodies->middle);
     free(bodies->half);
+    free(bodies->owner_first);
+    free(bodies->cells);
+    free(bodies->whole_first);
+    free(bodies->wholes);
     *bodies = (enf_bodies){0};
 }

@@ -9,9 +9,9 @@
 
 #include <stdlib.h>
 
-/// What is known of a cell's bodies, besides their rows.
+/// What is known of an owner, besides the row.
 typedef struct cast_result {
-    bool late; ///< not all bodies had their turn
+    bool late; ///< there was no time
     int64_t visits;
 } cast_result;
 
@@ -19,27 +19,22 @@ typedef struct casting {
     enf_body_cast *cast;
     double deadline;
     enf_beams **beams;    ///< per thread
-    cast_result *results; ///< per cell
-    int64_t *cost;        ///< per cell: its bodies, times the portals that face its own
-    bool *begun;          ///< per cell
+    cast_result *results; ///< per owner
+    int64_t *cost;        ///< per owner: the portals that face those of its cells
+    bool *begun;          ///< per owner
     enf_follows follows;
 } casting;
 
-static int32_t first_of(const casting *casting, int32_t cell) {
-    return casting->cast->bodies->cell_first[cell];
-}
-
 // ---------------------------------------------------------------------------------------------- jobs
 
-static void meet_cell(uint64_t *row, const enf_bodies *bodies, int32_t cell) {
-    for (int32_t k = bodies->cell_first[cell]; k < bodies->cell_first[cell + 1]; k++) enf_bit_set(row, k);
+static void meet_cell(uint64_t *met, const enf_bodies *bodies, int32_t cell) {
+    for (int32_t k = bodies->cell_first[cell]; k < bodies->cell_first[cell + 1]; k++)
+        enf_bit_set(met, bodies->owner[k]);
 }
 
-/// For bodies that had no turn: they see what faces the portals of their cell.
-static void meet_facing(const casting *casting, int32_t cell, int32_t body) {
-    const enf_body_cast *cast = casting->cast;
+/// For bodies in a cell that had no turn: they see what faces its portals.
+static void meet_facing(const enf_body_cast *cast, int32_t cell, uint64_t *met) {
     const enf_portal_graph *graph = cast->shapes->graph;
-    uint64_t *met = enf_bits_row(&cast->met, body);
     meet_cell(met, cast->bodies, cell);
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
         int32_t portal = graph->cell_portals[k];
@@ -50,40 +45,42 @@ static void meet_facing(const casting *casting, int32_t cell, int32_t body) {
     }
 }
 
-static enf_status run_cell(void *user, int32_t cell, int thread, bool *late, enf_error *error) {
+static void meet_late(const enf_body_cast *cast, int32_t owner) {
+    const enf_bodies *bodies = cast->bodies;
+    for (int32_t k = bodies->owner_first[owner]; k < bodies->owner_first[owner + 1]; k++)
+        meet_facing(cast, bodies->cells[k], enf_bits_row(&cast->met, owner));
+}
+
+static enf_status run_owner(void *user, int32_t owner, int thread, bool *late, enf_error *error) {
     const casting *casting = user;
+    const enf_body_cast *cast = casting->cast;
     enf_beams *beams = casting->beams[thread];
-    cast_result *result = &casting->results[cell];
+    cast_result *result = &casting->results[owner];
     int64_t visits = enf_beams_visits(beams);
-    for (int32_t k = first_of(casting, cell); k < first_of(casting, cell + 1); k++) {
-        result->late = result->late || enf_timer_now() > casting->deadline;
-        if (result->late)
-            meet_facing(casting, cell, k);
-        else
-            enf_beams_cast_body(beams, casting->cast->bodies, cell, k, enf_bits_row(&casting->cast->met, k));
-    }
+    *late = result->late = enf_timer_now() > casting->deadline;
+    if (result->late)
+        meet_late(cast, owner);
+    else
+        enf_beams_cast_owner(beams, cast->bodies, owner, enf_bits_row(&cast->met, owner));
     result->visits = enf_beams_visits(beams) - visits;
-    *late = result->late;
     (void)error;
     return ENF_OK;
 }
 
-static void encode_cell(void *user, int32_t cell, enf_bytes *bytes) {
+static void encode_owner(void *user, int32_t owner, enf_bytes *bytes) {
     const casting *casting = user;
     const enf_bits *met = &casting->cast->met;
-    enf_put_number(bytes, casting->results[cell].late);
-    enf_put_number(bytes, (uint64_t)casting->results[cell].visits);
-    for (int32_t k = first_of(casting, cell); k < first_of(casting, cell + 1); k++)
-        enf_put_row(bytes, enf_bits_row(met, k), met->row_words);
+    enf_put_number(bytes, casting->results[owner].late);
+    enf_put_number(bytes, (uint64_t)casting->results[owner].visits);
+    enf_put_row(bytes, enf_bits_row(met, owner), met->row_words);
 }
 
-static bool decode_cell(void *user, int32_t cell, enf_reader *reader) {
+static bool decode_owner(void *user, int32_t owner, enf_reader *reader) {
     const casting *casting = user;
     const enf_bits *met = &casting->cast->met;
-    casting->results[cell].late = enf_take_number(reader, 1);
-    casting->results[cell].visits = (int64_t)enf_take_number(reader, ENF_COUNT_MOST);
-    for (int32_t k = first_of(casting, cell); k < first_of(casting, cell + 1); k++)
-        enf_take_row(reader, enf_bits_row(met, k), casting->cast->bodies->count);
+    casting->results[owner].late = enf_take_number(reader, 1);
+    casting->results[owner].visits = (int64_t)enf_take_number(reader, ENF_COUNT_MOST);
+    enf_take_row(reader, enf_bits_row(met, owner), met->row_count);
     return true;
 }
 
@@ -95,14 +92,13 @@ static bool faces(const void *user, int32_t portal, int32_t next) {
 
 static bool make_casting(casting *casting, int threads) {
     enf_body_cast *cast = casting->cast;
-    const enf_portal_graph *graph = cast->shapes->graph;
-    size_t cells = (size_t)graph->cell_count;
-    casting->results = enf_array_zeroed(cells, sizeof *casting->results);
-    casting->cost = enf_array_zeroed(cells, sizeof *casting->cost);
-    casting->begun = enf_array_zeroed(cells, sizeof *casting->begun);
+    const int32_t owners = cast->bodies->owner_count;
+    casting->results = enf_array_zeroed((size_t)owners, sizeof *casting->results);
+    casting->cost = enf_array_zeroed((size_t)owners, sizeof *casting->cost);
+    casting->begun = enf_array_zeroed((size_t)owners, sizeof *casting->begun);
     casting->beams = enf_array_zeroed((size_t)threads, sizeof *casting->beams);
-    if (!enf_bits_new(&cast->met, cast->bodies->count, cast->bodies->count) ||
-        !enf_follows_make(&casting->follows, graph, faces, cast->facing) || !casting->results ||
+    if (!enf_bits_new(&cast->met, owners, owners) ||
+        !enf_follows_make(&casting->follows, cast->shapes->graph, faces, cast->facing) || !casting->results ||
         !casting->cost || !casting->begun || !casting->beams)
         return false;
     for (int i = 0; i < threads; i++) {
@@ -121,24 +117,29 @@ static void free_casting(casting *casting, int threads) {
     enf_follows_free(&casting->follows);
 }
 
-static void find_cost(casting *casting) {
+/// False without memory.
+static bool find_cost(const casting *casting) {
     const enf_portal_graph *graph = casting->cast->shapes->graph;
     const enf_bits *facing = casting->cast->facing;
+    const enf_bodies *bodies = casting->cast->bodies;
+    int64_t *of_cell = enf_array_zeroed((size_t)graph->cell_count, sizeof *of_cell);
+    if (!of_cell) return false;
     for (int32_t p = 0; p < facing->row_count; p++)
-        casting->cost[enf_portal_from(graph, p)] +=
-            enf_bits_count(enf_bits_row(facing, p), facing->row_words);
-    for (int32_t c = 0; c < graph->cell_count; c++)
-        casting->cost[c] = (1 + casting->cost[c]) * (first_of(casting, c + 1) - first_of(casting, c));
+        of_cell[enf_portal_from(graph, p)] += enf_bits_count(enf_bits_row(facing, p), facing->row_words);
+    for (int32_t o = 0; o < bodies->owner_count; o++)
+        for (int32_t k = bodies->owner_first[o]; k < bodies->owner_first[o + 1]; k++)
+            casting->cost[o] += 1 + of_cell[bodies->cells[k]];
+    free(of_cell);
+    return true;
 }
 
-static void sum_up(casting *casting) {
+static void sum_up(const casting *casting) {
     enf_body_cast *cast = casting->cast;
-    for (int32_t c = 0; c < cast->shapes->graph->cell_count; c++) {
-        bool none = casting->cost[c] > 0 && !casting->begun[c];
-        for (int32_t k = first_of(casting, c); none && k < first_of(casting, c + 1); k++)
-            meet_facing(casting, c, k);
-        cast->visits += casting->results[c].visits;
-        cast->cells_budgeted += none || casting->results[c].late;
+    for (int32_t o = 0; o < cast->bodies->owner_count; o++) {
+        bool none = casting->cost[o] > 0 && !casting->begun[o];
+        if (none) meet_late(cast, o);
+        cast->visits += casting->results[o].visits;
+        cast->owners_budgeted += none || casting->results[o].late;
     }
 }
 
@@ -151,22 +152,27 @@ static void symmetrise(enf_bits *met) {
     }
 }
 
+/// What the results depend on, besides the graph.
+static uint64_t find_key(const enf_bodies *bodies) {
+    const size_t corners = (size_t)bodies->corner_first[bodies->count] * sizeof *bodies->corners;
+    const uint64_t key = enf_hash64(bodies->owner, (size_t)bodies->count * sizeof *bodies->owner, 0);
+    return enf_hash64(bodies->corners, corners, key);
+}
+
 enf_status enf_body_cast_run(enf_body_cast *cast, enf_workplace *place, enf_error *error) {
     casting casting = {.cast = cast, .deadline = place->deadline};
     int threads = place->crew.threads;
-    enf_status status = make_casting(&casting, threads) ? ENF_OK : enf_fail_memory(error, "the beams");
+    bool made = make_casting(&casting, threads) && find_cost(&casting);
+    enf_status status = made ? ENF_OK : enf_fail_memory(error, "the beams");
     if (!status) {
-        find_cost(&casting);
-        const enf_bodies *bodies = cast->bodies;
-        size_t size = (size_t)bodies->corner_first[bodies->count] * sizeof *bodies->corners;
         const enf_work work = {.stage = ENF_STAGE_BODIES,
-                               .key = enf_hash64(bodies->corners, size, 0),
-                               .cell_count = cast->shapes->graph->cell_count,
+                               .key = find_key(cast->bodies),
+                               .cell_count = cast->bodies->owner_count,
                                .cost = casting.cost,
                                .user = &casting,
-                               .run = run_cell,
-                               .encode = encode_cell,
-                               .decode = decode_cell};
+                               .run = run_owner,
+                               .encode = encode_owner,
+                               .decode = decode_owner};
         status = enf_work_run(&work, place, casting.begun, error);
     }
     if (!status) sum_up(&casting);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Beams from bodies: which bodies in the cells of a portal graph may see each other.
+// Beams from bodies: whose bodies in the cells of a portal graph may see each other.
 #ifndef ENF_VISIBILITY_BODY_CAST_H
 #define ENF_VISIBILITY_BODY_CAST_H
 
@@ -14,9 +14,9 @@ typedef struct enf_body_cast {
     const enf_bodies *bodies;
 
     // Made; free them in any case.
-    enf_bits met; ///< bit j of row i: the beams of body i meet body j, and the other way round
+    enf_bits met; ///< bit j of row i: the beams of owner i meet a body of owner j, and the other way round
     int64_t visits;
-    int32_t cells_budgeted; ///< cells with bodies whose turn came too late: those see all that faces them
+    int32_t owners_budgeted; ///< whose turn came too late: those see all that faces their cells
 } enf_body_cast;
 
 enf_status enf_body_cast_run(enf_body_cast *cast, enf_workplace *place, enf_error *error);

@@ -26,7 +26,6 @@ struct enf_checkpoint {
     char *path;
     int file;
     double synced;
-    int32_t cell_count;
     enf_bytes old; ///< the file as it was
     enf_record *records;
     size_t record_count, record_capacity;
@@ -105,7 +104,7 @@ static bool read_record(const enf_checkpoint *checkpoint, size_t at, enf_record 
                            .key = word_at(bytes, 8, 8),
                            .result = bytes + RECORD_SIZE,
                            .size = (size_t)word_at(bytes, 20, 4)};
-    return cell < (uint64_t)checkpoint->cell_count && record->size <= left - RECORD_SIZE &&
+    return cell <= INT32_MAX && record->size <= left - RECORD_SIZE &&
            word_at(bytes, 24, 8) == enf_hash64(bytes, 24, enf_hash64(record->result, record->size, 0));
 }
 
@@ -233,11 +232,7 @@ enf_status enf_checkpoint_open(enf_checkpoint **checkpoint, const char *path,
     enf_bytes header = {0};
     put_header(&header, about);
     enf_checkpoint *opened = calloc(1, sizeof *opened);
-    if (opened)
-        *opened = (enf_checkpoint){.path = strdup(path),
-                                   .file = -1,
-                                   .synced = enf_timer_now(),
-                                   .cell_count = about->graph->cell_count};
+    if (opened) *opened = (enf_checkpoint){.path = strdup(path), .file = -1, .synced = enf_timer_now()};
     enf_status status = opened && opened->path && !header.failed ? open_all(opened, &header, error)
                                                                  : enf_fail_memory(error, "the checkpoint");
     enf_bytes_free(&header);

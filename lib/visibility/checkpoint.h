@@ -21,7 +21,7 @@
 //      0  4         "job\n"
 //      4  4         stage
 //      8  8         key: what the stage goes by; records with another key are of no use, and do no harm
-//     16  4         cell
+//     16  4         cell, as the stage counts them
 //     20  4         bytes of the result
 //     24  8         hash of the 24 bytes above, with the hash of the result as its seed
 //     32            the result, as the stage encodes it
@@ -35,8 +35,9 @@
 #include "visibility/bytes.h"
 #include "visibility/portal_graph.h"
 
-/// Goes up when results change, in what they look like or in what they mean. 2: lines are in order.
-enum { ENF_CHECKPOINT_FORMAT = 2 };
+/// Goes up when results change, in what they look like or in what they mean. 2: lines are in order. 3: beams
+/// come from all bodies of an owner at once.
+enum { ENF_CHECKPOINT_FORMAT = 3 };
 
 typedef struct enf_checkpoint enf_checkpoint;
 
@@ -64,7 +65,7 @@ typedef struct enf_record {
     size_t size;
 } enf_record;
 
-/// What was there, in its order; *count of them. The cells exist, the results are as they were written.
+/// What was there, in its order; *count of them. The results are as they were written.
 const enf_record *enf_checkpoint_records(const enf_checkpoint *checkpoint, size_t *count);
 const char *enf_checkpoint_path(const enf_checkpoint *checkpoint);
 

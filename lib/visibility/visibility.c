@@ -154,7 +154,7 @@ static enf_status cast_bodies(ladder *ladder, enf_error *error) {
     enf_status status = enf_body_cast_run(&cast, place, error);
     visibility->met = cast.met;
     visibility->body_visits = cast.visits;
-    visibility->cells_budgeted = cast.cells_budgeted;
+    visibility->cells_budgeted = cast.owners_budgeted;
     if (!status) set_cells(ladder->graph, &ladder->facing, &visibility->pvs);
     return status;
 }

@@ -51,7 +51,8 @@ typedef struct enf_visibility {
     enf_method method;
     enf_pvs pvs; ///< symmetric; with bodies, by `hourglass` no more than what faces each other: see `met`
 
-    /// With bodies, from the rung hourglass on: bit j of row i: bodies i and j may see each other; symmetric.
+    /// With bodies, from the rung hourglass on: bit j of row i: bodies of owners i and j may see each other;
+    /// symmetric.
     enf_bits met;
 
     // If wanted: one for each unordered pair of cells that was proved visible.
@@ -69,7 +70,7 @@ typedef struct enf_visibility {
     int64_t nodes;          ///< lp and exact: portals that sequences came to
     enf_stab_counts stabs;  ///< lp and exact: what it took to decide sequences
     int64_t jobs_stored;    ///< what the checkpoint had already: results for a cell
-    int64_t cells_budgeted; ///< cells whose beams were too late for the budget
+    int64_t cells_budgeted; ///< cells, or owners of bodies, whose beams were too late for the budget
     int64_t pairs_budgeted; ///< pairs that were, and count as seen
 
     // Of pairs that were proved visible: how many portals the line passes that proved it.

@@ -21,7 +21,8 @@ static enf_status take_stored(enf_shop *shop, enf_error *error) {
     const enf_record *records = checkpoint ? enf_checkpoint_records(checkpoint, &count) : NULL;
     for (size_t i = 0; i < count; i++) {
         const enf_record *record = &records[i];
-        if (record->stage != work->stage || record->key != work->key || shop->begun[record->cell]) continue;
+        if (record->stage != work->stage || record->key != work->key) continue;
+        if (record->cell >= work->cell_count || shop->begun[record->cell]) continue;
         enf_reader reader = {record->result, record->result + record->size, false};
         if (!work->decode(work->user, record->cell, &reader)) return enf_fail_memory(error, "the results");
         if (reader.failed || enf_reader_left(&reader) > 0)

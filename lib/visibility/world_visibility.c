@@ -3,13 +3,16 @@
 
 #include <math.h>
 
-/// Cells see each other if parts of them do, in leafs that do.
+/// Cells see each other if they have parts in leafs that do, and their parts may, too.
 static void join_leafs(enf_pvs *cells, const enf_visibility *found, const enf_bodies *bodies, int32_t leaf,
                        int32_t other) {
     for (int32_t i = bodies->cell_first[leaf]; i < bodies->cell_first[leaf + 1]; i++) {
-        const uint64_t *row = found->met.words ? enf_bits_row(&found->met, i) : NULL;
-        for (int32_t k = bodies->cell_first[other]; k < bodies->cell_first[other + 1]; k++)
-            if (!row || enf_bit_get(row, k)) enf_pvs_set(cells, bodies->owner[i], bodies->owner[k]);
+        const int32_t from = bodies->owner[i];
+        const uint64_t *row = found->met.words ? enf_bits_row(&found->met, from) : NULL;
+        for (int32_t k = bodies->cell_first[other]; k < bodies->cell_first[other + 1]; k++) {
+            const int32_t to = bodies->owner[k];
+            if (!row || enf_bit_get(row, to)) enf_pvs_set(cells, from, to);
+        }
     }
 }
 
