@@ -243,6 +243,19 @@ static void meet_bodies(enf_beams *beams, int32_t via, bool *ready) {
     }
 }
 
+/// Can lines from the source pass the portal forwards? Some of a body must lie behind it (between portals,
+/// `facing` says so).
+static bool is_passable(const enf_beams *beams, int32_t portal) {
+    const enf_outline *corners = &beams->source.body.corners;
+    if (beams->source.portal >= 0) return true;
+    for (int32_t i = 0; i < corners->count; i++) {
+        double corner[3];
+        enf_outline_corner(corners, i, corner);
+        if (enf_shape_height(beams->shapes, portal, corner) < beams->shapes->tolerance) return true;
+    }
+    return false;
+}
+
 /// From one portal into its cell and out of the others.
 static void spread(enf_beams *beams, int32_t via) {
     const enf_follows *follows = beams->follows;
@@ -255,10 +268,12 @@ static void spread(enf_beams *beams, int32_t via) {
         ready = true;
         enf_remains remains = enf_separators_cut(&beams->separators, beams->shapes, next, &beams->window);
         if (remains == ENF_REMAINS_NOTHING) continue;
-        if (beams->beams[next].state == BEAM_NONE)
+        if (beams->beams[next].state != BEAM_NONE)
+            merge(beams, next, remains);
+        else if (is_passable(beams, next))
             reach(beams, next, remains);
         else
-            merge(beams, next, remains);
+            enf_bit_clear(beams->open, next);
     }
 }
 
