@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-enum { ROUNDS = 3000, POINTS_MOST = 80 };
+enum { ROUNDS = 3000, POINTS_MOST = 160 };
 
 static uint64_t state = 1;
 
@@ -111,6 +111,34 @@ static void test_a_body_holds_its_points(void **unused) {
 }
 
 /// Two openings above a body: the first a polygon, the second large enough for all.
+/// Many points in an octahedron: its six corners are left, wherever they come, and not the box around it.
+static void test_a_body_of_many_points_is_their_hull(void **unused) {
+    enum { MANY = 500 };
+    static double points[MANY][3];
+    enf_body body;
+    (void)unused;
+    for (int round = 0; round < 50; round++) {
+        for (int i = 0; i < MANY; i++) {
+            double size = 0;
+            for (int axis = 0; axis < 3; axis++) size += fabs(points[i][axis] = random_between(-1, 1));
+            for (int axis = 0; axis < 3; axis++) points[i][axis] /= 1.001 * fmax(size, 1);
+        }
+        for (int corner = 0; corner < 6; corner++) {
+            double *point = points[corner * 80 + (int)random_between(0, 80)];
+            memset(point, 0, sizeof *points);
+            point[corner / 2] = corner % 2 ? 1 : -1;
+        }
+        enf_body_make(&body, (const double(*)[3])points, MANY, 1e-13);
+        assert_int_equal(body.corners.count, 6);
+        assert_int_equal(body.edge_count, 12);
+        for (int i = 0; i < 6; i++) {
+            double corner[3];
+            enf_outline_corner(&body.corners, i, corner);
+            assert_true(fabs(corner[0]) + fabs(corner[1]) + fabs(corner[2]) == 1);
+        }
+    }
+}
+
 static void make_graph(enf_portal_graph *graph, double height) {
     double corners[5][3];
     *graph = (enf_portal_graph){.cell_count = 3};
@@ -225,6 +253,7 @@ static void test_separators_from_a_body_are_tight(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_body_holds_its_points),
+                                       cmocka_unit_test(test_a_body_of_many_points_is_their_hull),
                                        cmocka_unit_test(test_separators_leave_what_lines_from_a_body_reach),
                                        cmocka_unit_test(test_separators_from_a_body_are_tight)};
     return cmocka_run_group_tests(tests, NULL, NULL);

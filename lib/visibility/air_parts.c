@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "format/frame.h"
+#include "visibility/distinct.h"
 #include "visibility/flat_hull.h"
 #include "visibility/window.h"
 
@@ -36,6 +37,7 @@ typedef struct slicer {
     double (*corners)[3]; ///< of the pieces
     int32_t corner_count;
     size_t corner_capacity;
+    enf_distinct distinct;
 } slicer;
 
 static double height_above(const enf_air_node *node, const double point[3]) {
@@ -140,10 +142,6 @@ static bool sink(slicer *slicer, int32_t at, const body *given) {
     return put_piece(slicer, -1 - at, &body);
 }
 
-static int compare_points(const void *a, const void *b) {
-    return memcmp(a, b, 3 * sizeof(double));
-}
-
 /// The corners of a fine cell, each once, as the only body of the stack.
 static bool take_fine_cell(slicer *slicer, const enf_file_view *view, int32_t fine, int32_t **vertices,
                            size_t *capacity, body *body) {
@@ -203,20 +201,17 @@ static void drop_thin(slicer *slicer) {
     slicer->piece_count = kept;
 }
 
-/// Copies the corners of pieces i..end-1, each once.
-static void put_corners(enf_bodies *parts, const slicer *slicer, int32_t begin, int32_t end) {
+/// Copies the corners of pieces i..end-1, each once. False without memory.
+static bool put_corners(enf_bodies *parts, slicer *slicer, int32_t begin, int32_t end) {
     int32_t first = parts->corner_first[parts->count], made = first;
     for (int32_t i = begin; i < end; i++) {
         memcpy(parts->corners + made, slicer->corners + slicer->pieces[i].first,
                (size_t)slicer->pieces[i].count * sizeof *parts->corners);
         made += slicer->pieces[i].count;
     }
-    qsort(parts->corners + first, (size_t)(made - first), sizeof *parts->corners, compare_points);
-    int32_t kept = first;
-    for (int32_t i = first; i < made; i++)
-        if (i == first || compare_points(parts->corners[i], parts->corners[kept - 1]) != 0)
-            memmove(parts->corners[kept++], parts->corners[i], sizeof *parts->corners);
-    parts->corner_first[parts->count + 1] = kept;
+    const int32_t kept = enf_distinct_keep(&slicer->distinct, parts->corners + first, made - first);
+    parts->corner_first[parts->count + 1] = first + kept;
+    return kept >= 0;
 }
 
 static bool join_pieces(enf_air_parts *air, slicer *slicer, int32_t cell_count) {
@@ -243,7 +238,7 @@ static bool join_pieces(enf_air_parts *air, slicer *slicer, int32_t cell_count) 
             for (end = i; end < slicer->piece_count && slicer->pieces[end].leaf == leaf &&
                           slicer->pieces[end].cell == piece->cell;)
                 end++;
-            put_corners(parts, slicer, i, end);
+            good = good && put_corners(parts, slicer, i, end);
             parts->owner[parts->count++] = piece->cell;
             found[piece->cell] = true;
         }
@@ -269,6 +264,7 @@ enf_status enf_air_parts_make(enf_air_parts *air, const enf_air_tree *tree, cons
     free(slicer.cap);
     free(slicer.pieces);
     free(slicer.corners);
+    free(slicer.distinct.slots);
     return good ? ENF_OK : enf_fail_memory(error, "the parts of cells");
 }
 

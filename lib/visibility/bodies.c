@@ -2,6 +2,7 @@
 #include "visibility/bodies.h"
 
 #include "base/array.h"
+#include "visibility/distinct.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,20 +26,6 @@ static bool find_boxes(enf_bodies *bodies) {
             bodies->half[b][axis] = (high - low) / 2 + rounding * (fabs(low) + fabs(high));
         }
     return true;
-}
-
-static int compare_points(const void *a, const void *b) {
-    return memcmp(a, b, 3 * sizeof(double));
-}
-
-/// Each once; returns how many are left.
-static int32_t drop_doubles(double (*points)[3], int32_t count) {
-    int32_t kept = 0;
-    qsort(points, (size_t)count, sizeof *points, compare_points);
-    for (int32_t i = 0; i < count; i++)
-        if (i == 0 || compare_points(points[i], points[kept - 1]) != 0)
-            memmove(points[kept++], points[i], sizeof *points);
-    return kept;
 }
 
 /// Turns counts of entries 0..count-1 into offsets.
@@ -82,22 +69,25 @@ static bool find_owners(enf_bodies *bodies) {
     return true;
 }
 
-static void drop_all_doubles(enf_bodies *bodies) {
-    int32_t kept = 0;
-    for (int32_t o = 0; o < bodies->owner_count; o++) {
+/// Leaves each corner of an owner once.
+static bool drop_doubles(enf_bodies *bodies) {
+    enf_distinct distinct = {0};
+    int32_t kept = 0, count = 0;
+    for (int32_t o = 0; o < bodies->owner_count && count >= 0; o++) {
         const int32_t first = bodies->whole_first[o];
-        const int32_t count = drop_doubles(bodies->wholes + first, bodies->whole_first[o + 1] - first);
-        memmove(bodies->wholes + kept, bodies->wholes + first, (size_t)count * sizeof *bodies->wholes);
+        count = enf_distinct_keep(&distinct, bodies->wholes + first, bodies->whole_first[o + 1] - first);
+        if (count > 0)
+            memmove(bodies->wholes + kept, bodies->wholes + first, (size_t)count * sizeof *bodies->wholes);
         bodies->whole_first[o] = kept;
         kept += count;
     }
+    free(distinct.slots);
     bodies->whole_first[bodies->owner_count] = kept;
+    return count >= 0;
 }
 
 bool enf_bodies_finish(enf_bodies *bodies) {
-    if (!find_boxes(bodies) || !find_owners(bodies)) return false;
-    drop_all_doubles(bodies);
-    return true;
+    return find_boxes(bodies) && find_owners(bodies) && drop_doubles(bodies);
 }
 
 void enf_bodies_free(enf_bodies *bodies) {

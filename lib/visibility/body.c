@@ -7,8 +7,10 @@
 #include <string.h>
 
 enum {
-    POINTS_MOST = 64,            ///< that a hull is made of
-    FACES_MOST = 8 * POINTS_MOST ///< that are made on the way
+    POINTS_MOST = 64,             ///< that a hull is made of
+    FACES_MOST = 8 * POINTS_MOST, ///< that are made on the way
+    KEPT_MOST = 8 * POINTS_MOST,  ///< corners of hulls of some points each
+    THINNINGS = 8                 ///< more than it takes to come down to one hull
 };
 
 typedef struct face {
@@ -260,10 +262,44 @@ static void take_box(enf_body *body) {
     close_corners(body, 8);
 }
 
+/// Keeps the corners of the hull of some points; all of them where there is doubt. Returns how many.
+static int32_t keep_corners(hull *hull, const double (*points)[3], int32_t count, double tolerance,
+                            double (*kept)[3]) {
+    bool is_corner[POINTS_MOST] = {false};
+    const bool good = make_hull(hull, points, count, tolerance);
+    for (int32_t i = 0; good && i < hull->face_count; i++)
+        for (int k = 0; !hull->faces[i].is_gone && k < 3; k++) is_corner[hull->faces[i].corner[k]] = true;
+    int32_t made = 0;
+    for (int32_t i = 0; i < count; i++)
+        if (!good || is_corner[i]) memmove(kept[made++], points[i], sizeof *kept);
+    return made;
+}
+
+/// Of more points than a hull is made of, the corners of the hulls of some at a time, until they are few
+/// enough. Returns how many there are then; more than POINTS_MOST if that does not help.
+static int32_t thin_out(hull *hull, const double (*points)[3], int32_t count, double tolerance,
+                        double (*kept)[3]) {
+    for (int32_t made; count > POINTS_MOST; points = (const double(*)[3])kept, count = made) {
+        made = 0;
+        for (int32_t first = 0; first < count; first += POINTS_MOST) {
+            const int32_t rest = count - first, some = rest < POINTS_MOST ? rest : POINTS_MOST;
+            if (made + some > KEPT_MOST) return KEPT_MOST;
+            made += keep_corners(hull, points + first, some, tolerance, kept + made);
+        }
+        if (made == count) break;
+    }
+    return count;
+}
+
 void enf_body_make(enf_body *body, const double (*points)[3], int32_t count, double tolerance) {
     hull hull;
+    double kept[KEPT_MOST][3];
     find_box(body, points, count);
     body->edge_count = 0;
+    if (count > POINTS_MOST) {
+        count = thin_out(&hull, points, count, tolerance / THINNINGS, kept);
+        points = (const double(*)[3])kept;
+    }
     if (!make_hull(&hull, points, count, tolerance) || !take_hull(body, &hull)) take_box(body);
     close_edges(body);
 }

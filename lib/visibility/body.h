@@ -23,8 +23,9 @@ typedef struct enf_body {
     double at[3][ENF_BODY_CORNERS + ENF_OUTLINE_MORE];
 } enf_body;
 
-/// Makes the body of some points: their hull, or, where rounding or their number makes that doubtful, the box
-/// around them. Corners within the tolerance of the hull of others are left out. `count` is at least 1.
+/// Makes the body of some points: their hull, or, where rounding or the number of its corners makes that
+/// doubtful, the box around them. Corners within the tolerance of the hull of others are left out. `count` is
+/// at least 1.
 void enf_body_make(enf_body *body, const double (*points)[3], int32_t count, double tolerance);
 
 #endif
