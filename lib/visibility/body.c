@@ -9,8 +9,7 @@
 enum {
     POINTS_MOST = 64,             ///< that a hull is made of
     FACES_MOST = 8 * POINTS_MOST, ///< that are made on the way
-    KEPT_MOST = 8 * POINTS_MOST,  ///< corners of hulls of some points each
-    THINNINGS = 8                 ///< more than it takes to come down to one hull
+    ADDED_LEAST = 8               ///< points that are put to a hull at a time
 };
 
 typedef struct face {
@@ -275,29 +274,44 @@ static int32_t keep_corners(hull *hull, const double (*points)[3], int32_t count
     return made;
 }
 
-/// Of more points than a hull is made of, the corners of the hulls of some at a time, until they are few
-/// enough. Returns how many there are then; more than POINTS_MOST if that does not help.
+/// The farthest points along the axes and the diagonals, both ways: of most others they leave nothing.
+static int32_t take_farthest(const double (*points)[3], int32_t count, double (*kept)[3]) {
+    static const double ways[][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 1},
+                                     {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
+    int32_t made = 0;
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+        int32_t low = 0, high = 0;
+        for (int32_t i = 1; i < count; i++) {
+            const double at = enf_dot(ways[k], points[i]);
+            if (at < enf_dot(ways[k], points[low])) low = i;
+            if (at > enf_dot(ways[k], points[high])) high = i;
+        }
+        memcpy(kept[made++], points[low], sizeof *kept);
+        memcpy(kept[made++], points[high], sizeof *kept);
+    }
+    return made;
+}
+
+/// Of more points than a hull is made of, the corners of their hull: some points are put to those that there
+/// are, time and again. Returns how many there are, or POINTS_MOST + 1 if they are too many.
 static int32_t thin_out(hull *hull, const double (*points)[3], int32_t count, double tolerance,
                         double (*kept)[3]) {
-    for (int32_t made; count > POINTS_MOST; points = (const double(*)[3])kept, count = made) {
-        made = 0;
-        for (int32_t first = 0; first < count; first += POINTS_MOST) {
-            const int32_t rest = count - first, some = rest < POINTS_MOST ? rest : POINTS_MOST;
-            if (made + some > KEPT_MOST) return KEPT_MOST;
-            made += keep_corners(hull, points + first, some, tolerance, kept + made);
-        }
-        if (made == count) break;
+    int32_t made = take_farthest(points, count, kept);
+    for (int32_t next = 0; next < count;) {
+        if (made > POINTS_MOST - ADDED_LEAST) return POINTS_MOST + 1;
+        while (made < POINTS_MOST && next < count) memcpy(kept[made++], points[next++], sizeof *kept);
+        made = keep_corners(hull, (const double(*)[3])kept, made, tolerance, kept);
     }
-    return count;
+    return made;
 }
 
 void enf_body_make(enf_body *body, const double (*points)[3], int32_t count, double tolerance) {
     hull hull;
-    double kept[KEPT_MOST][3];
+    double kept[POINTS_MOST][3];
     find_box(body, points, count);
     body->edge_count = 0;
     if (count > POINTS_MOST) {
-        count = thin_out(&hull, points, count, tolerance / THINNINGS, kept);
+        count = thin_out(&hull, points, count, tolerance * ADDED_LEAST / count, kept);
         points = (const double(*)[3])kept;
     }
     if (!make_hull(&hull, points, count, tolerance) || !take_hull(body, &hull)) take_box(body);
