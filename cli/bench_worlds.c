@@ -11,13 +11,14 @@
 #include "cli/job.h"
 #include "visibility/world_lines.h"
 #include "visibility/world_pvs.h"
+#include "visibility/world_views.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { TRIES = 8, RUNS_MOST = 15 };
+enum { TRIES = 8, VIEWS = 25, RUNS_MOST = 15 };
 
 typedef struct request {
     cli_settings settings;
@@ -43,17 +44,23 @@ static int64_t count_pairs(const enf_pvs *pvs) {
     return (enf_pvs_pairs(pvs) - pvs->cell_count) / 2;
 }
 
-/// Throws lines at what has not been seen yet, round after round.
+/// Throws lines at what has not been seen yet, round after round; most of them from views.
 static enf_status throw_lines(const request *request, const enf_file_view *view, const enf_pvs *claimed,
                               row *row, enf_error *error) {
-    enf_world_lines lines;
-    enf_status status = enf_world_lines_make(&lines, view, 1, error);
+    enf_world_lines lines = {0};
+    enf_world_air air;
+    const int64_t most = (int64_t)request->lines;
+    enf_status status = enf_world_air_make(&air, view, error);
+    if (!status) status = enf_world_lines_make(&lines, view, 1, error);
     for (int32_t i = 0; !status && i < view->portal_count; i++) // neighbours count as seen
         enf_pvs_set(&lines.seen, view->portals[i].from, view->portals[i].to);
-    for (int64_t tried = 1, thrown = -1; !status && tried > 0 && lines.count > thrown;) {
+    for (int64_t thrown = -1; !status && lines.count > thrown && lines.count < most;) {
         int64_t before = count_pairs(&lines.seen);
+        bool good = true;
         thrown = lines.count;
-        tried = enf_world_lines_aim(&lines, claimed, TRIES, (int64_t)request->lines);
+        enf_world_lines_aim(&lines, claimed, TRIES, most);
+        enf_world_views_aim(&lines, &air, claimed, VIEWS, most, &good);
+        if (!good) status = enf_fail_memory(error, "the views");
         if (lines.count > thrown) row->last = count_pairs(&lines.seen) - before;
     }
     if (!status) {
@@ -62,6 +69,7 @@ static enf_status throw_lines(const request *request, const enf_file_view *view,
         row->missed = count_missed(&lines.seen, claimed);
     }
     enf_world_lines_free(&lines);
+    enf_world_air_free(&air);
     return status;
 }
 

@@ -4,7 +4,7 @@
 #include "build/build.h"
 #include "build/gen.h"
 #include "build/write.h"
-#include "visibility/world_lines.h"
+#include "visibility/world_views.h"
 #include "visibility/world_visibility.h"
 
 #include <setjmp.h>
@@ -82,6 +82,12 @@ static void assert_symmetric(const enf_pvs *pvs) {
         for (int32_t j = 0; j <= i; j++) assert_int_equal(enf_pvs_get(pvs, i, j), enf_pvs_get(pvs, j, i));
 }
 
+static void aim_views(const world *world, enf_world_lines *lines, const enf_pvs *claimed, int points) {
+    bool good;
+    enf_world_views_aim(lines, &world->air, claimed, points, INT64_MAX, &good);
+    assert_true(good);
+}
+
 /// Throws lines at all pairs that are not seen, claimed or not. No pair may be seen and not claimed; of those
 /// seen, at most `excess` as many more may be claimed.
 static void assert_near_truth(const world *world, const enf_pvs *claimed, const enf_pvs *all, int rounds,
@@ -91,6 +97,8 @@ static void assert_near_truth(const world *world, const enf_pvs *claimed, const 
     assert_int_equal(enf_world_lines_make(&lines, &world->image.view, 7, &error), ENF_OK);
     for (int i = 0; i < 3; i++) enf_world_lines_aim(&lines, all, 4, INT64_MAX);
     for (int i = 0; i < rounds; i++) enf_world_lines_aim(&lines, claimed, 8, INT64_MAX);
+    aim_views(world, &lines, all, 2);
+    aim_views(world, &lines, claimed, rounds);
     assert_within(&lines.seen, claimed);
     double seen = (double)enf_pvs_pairs(&lines.seen), more = (double)enf_pvs_pairs(claimed) - seen;
     if (more > excess * seen) fail_msg("%g pairs more than the %g that lines have seen", more, seen);
@@ -182,6 +190,29 @@ static void test_walls_without_thickness(void **unused) {
     drop(&world);
 }
 
+/// From few points views show more than many lines do.
+static void test_views_show_more_than_lines(void **unused) {
+    (void)unused;
+    world world;
+    enf_world_lines lines, aimed;
+    enf_error error = {0};
+    bool good;
+    make(&world, "furnished", NULL);
+    enf_pvs claimed = find(&world, ENF_METHOD_HOURGLASS, 1);
+    assert_int_equal(enf_world_lines_make(&lines, &world.image.view, 3, &error), ENF_OK);
+    assert_int_equal(enf_world_lines_make(&aimed, &world.image.view, 3, &error), ENF_OK);
+    enf_world_views_aim(&aimed, &world.air, &claimed, 5, INT64_MAX, &good);
+    assert_true(good);
+    while (lines.count < aimed.count && enf_world_lines_aim(&lines, &claimed, 1, aimed.count) > 0) {
+    }
+    assert_within(&aimed.seen, &claimed);
+    assert_true(enf_pvs_pairs(&aimed.seen) > enf_pvs_pairs(&lines.seen));
+    enf_world_lines_free(&lines);
+    enf_world_lines_free(&aimed);
+    enf_pvs_free(&claimed);
+    drop(&world);
+}
+
 static void test_a_level(void **unused) {
     (void)unused;
     char path[4096];
@@ -200,6 +231,7 @@ static void test_a_level(void **unused) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_built_in_worlds), cmocka_unit_test(test_threads_do_not_matter),
-        cmocka_unit_test(test_walls_without_thickness), cmocka_unit_test(test_a_level)};
+        cmocka_unit_test(test_views_show_more_than_lines), cmocka_unit_test(test_walls_without_thickness),
+        cmocka_unit_test(test_a_level)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -226,8 +226,7 @@ static double find_gap(const enf_shapes *shapes, int32_t portal, int32_t other) 
     return gap < shapes->extent * near ? find_box_gap(one, two) : gap;
 }
 
-/// Fills up the last four.
-static void close_separators(enf_separators *separators) {
+void enf_separators_close(enf_separators *separators) {
     const double nowhere[3] = {0};
     const int32_t count = separators->count;
     while (separators->count % ENF_FOUR) add_cut(separators, nowhere, -HUGE_VAL);
@@ -238,7 +237,7 @@ void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, 
     const enf_cut cut = enf_shape_cut(shapes, from_portal);
     separators->count = 0;
     add_cut(separators, cut.normal, cut.least);
-    close_separators(separators);
+    enf_separators_close(separators);
 }
 
 ENF_WIDE_TOO void enf_separators_between(enf_separators *separators, const enf_shapes *shapes,
@@ -259,7 +258,7 @@ ENF_WIDE_TOO void enf_separators_between(enf_separators *separators, const enf_s
     passage.forward = false;
     passage.is_second = true;
     add_planes(separators, &passage);
-    close_separators(separators);
+    enf_separators_close(separators);
 }
 
 void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
@@ -358,7 +357,7 @@ ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf
     separators->count = 0;
     add_far_planes(separators, &passage);
     add_body_planes(separators, &passage, body);
-    close_separators(separators);
+    enf_separators_close(separators);
 }
 
 /// The cuts that may leave nothing of a box, as far as its middle tells; false in *some if one of them surely

@@ -17,6 +17,9 @@ typedef struct enf_separators {
         least[ENF_SEPARATORS_MOST]; ///< keep what is in front: normal . x >= least
 } enf_separators;
 
+/// Fills up to the next four, once all are there.
+void enf_separators_close(enf_separators *separators);
+
 /// For lines that have passed one directed portal only: they go on beyond its plane.
 void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, int32_t from_portal);
 

@@ -65,7 +65,7 @@ void enf_world_lines_free(enf_world_lines *lines) {
     *lines = (enf_world_lines){0};
 }
 
-static double next_share(enf_world_lines *lines) {
+double enf_world_lines_share(enf_world_lines *lines) {
     lines->seed = enf_hash_mix(lines->seed + UINT64_C(0x9e3779b97f4a7c15));
     return (double)(lines->seed >> 11) * 0x1p-53;
 }
@@ -74,8 +74,8 @@ static double next_share(enf_world_lines *lines) {
 static void find_point(enf_world_lines *lines, int32_t opening, double point[3]) {
     const enf_shape *shape = &lines->shapes.shapes[opening];
     const enf_outline outline = enf_shape_outline(&lines->shapes, opening);
-    int32_t corner = (int32_t)(next_share(lines) * shape->count);
-    double along = next_share(lines), out = sqrt(next_share(lines));
+    int32_t corner = (int32_t)(enf_world_lines_share(lines) * shape->count);
+    double along = enf_world_lines_share(lines), out = sqrt(enf_world_lines_share(lines));
     for (int axis = 0; axis < 3; axis++) {
         const double *at = outline.at[axis] + corner; // outlines are closed
         point[axis] = shape->centre[axis] + out * (at[0] + along * (at[1] - at[0]) - shape->centre[axis]);
@@ -110,14 +110,22 @@ void enf_world_lines_throw(enf_world_lines *lines, int32_t opening, int32_t othe
 void enf_world_lines_throw_any(enf_world_lines *lines) {
     int32_t count = lines->graph.opening_count;
     if (count == 0) return;
-    int32_t opening = (int32_t)(next_share(lines) * count);
-    enf_world_lines_throw(lines, opening, (int32_t)(next_share(lines) * count));
+    int32_t opening = (int32_t)(enf_world_lines_share(lines) * count);
+    enf_world_lines_throw(lines, opening, (int32_t)(enf_world_lines_share(lines) * count));
+}
+
+void enf_world_lines_follow(enf_world_lines *lines, const enf_line *line, int32_t cell) {
+    lines->count++;
+    for (int32_t k = lines->cell_first[cell]; k < lines->cell_first[cell + 1]; k++) {
+        follow(lines, line, 2 * lines->cell_openings[k]);
+        follow(lines, line, 2 * lines->cell_openings[k] + 1);
+    }
 }
 
 /// A random opening of the cell; -1: it has none.
 static int32_t any_opening(enf_world_lines *lines, int32_t cell) {
     int32_t first = lines->cell_first[cell], count = lines->cell_first[cell + 1] - first;
-    return count > 0 ? lines->cell_openings[first + (int32_t)(next_share(lines) * count)] : -1;
+    return count > 0 ? lines->cell_openings[first + (int32_t)(enf_world_lines_share(lines) * count)] : -1;
 }
 
 int64_t enf_world_lines_aim(enf_world_lines *lines, const enf_pvs *claimed, int tries, int64_t most) {

@@ -34,6 +34,12 @@ void enf_world_lines_throw(enf_world_lines *lines, int32_t opening, int32_t othe
 /// The same, through random openings.
 void enf_world_lines_throw_any(enf_world_lines *lines);
 
+/// Follows a line onwards from all openings of the cell that it passes, on either side of its ends.
+void enf_world_lines_follow(enf_world_lines *lines, const enf_line *line, int32_t cell);
+
+/// The next random number, from 0 up to 1.
+double enf_world_lines_share(enf_world_lines *lines);
+
 /// For each pair of `claimed` that has not been seen throws up to `tries` lines between openings of the two,
 /// until it is; stops when there are `most` lines in all. Returns how many pairs (i < j) it tried.
 int64_t enf_world_lines_aim(enf_world_lines *lines, const enf_pvs *claimed, int tries, int64_t most);
