@@ -9,7 +9,7 @@
 enum {
     POINTS_MOST = 64,             ///< that a hull is made of
     FACES_MOST = 8 * POINTS_MOST, ///< that are made on the way
-    ADDED_LEAST = 8               ///< points that are put to a hull at a time
+    ROUNDS_MOST = 8               ///< hulls that are made until there are few enough points
 };
 
 typedef struct face {
@@ -261,17 +261,23 @@ static void take_box(enf_body *body) {
     close_corners(body, 8);
 }
 
-/// Keeps the corners of the hull of some points; all of them where there is doubt. Returns how many.
-static int32_t keep_corners(hull *hull, const double (*points)[3], int32_t count, double tolerance,
-                            double (*kept)[3]) {
+/// Keeps the corners of a hull of some points. Returns how many.
+static int32_t keep_corners(const hull *hull, double (*points)[3], int32_t count) {
     bool is_corner[POINTS_MOST] = {false};
-    const bool good = make_hull(hull, points, count, tolerance);
-    for (int32_t i = 0; good && i < hull->face_count; i++)
-        for (int k = 0; !hull->faces[i].is_gone && k < 3; k++) is_corner[hull->faces[i].corner[k]] = true;
     int32_t made = 0;
+    for (int32_t i = 0; i < hull->face_count; i++)
+        for (int k = 0; !hull->faces[i].is_gone && k < 3; k++) is_corner[hull->faces[i].corner[k]] = true;
     for (int32_t i = 0; i < count; i++)
-        if (!good || is_corner[i]) memmove(kept[made++], points[i], sizeof *kept);
+        if (is_corner[i]) memmove(points[made++], points[i], sizeof *points);
     return made;
+}
+
+static bool is_outside(const hull *hull, const double point[3]) {
+    for (int32_t i = 0; i < hull->face_count; i++) {
+        const face *face = &hull->faces[i];
+        if (!face->is_gone && enf_dot(face->normal, point) - face->offset > hull->tolerance) return true;
+    }
+    return false;
 }
 
 /// The farthest points along the axes and the diagonals, both ways: of most others they leave nothing.
@@ -292,17 +298,21 @@ static int32_t take_farthest(const double (*points)[3], int32_t count, double (*
     return made;
 }
 
-/// Of more points than a hull is made of, the corners of their hull: some points are put to those that there
-/// are, time and again. Returns how many there are, or POINTS_MOST + 1 if they are too many.
+/// Of some points the farthest, and then as many as a hull is made of; where there are more, the corners of a
+/// hull of some, and others outside of it, in some rounds. Returns how many there are, or -1 if their hull
+/// has too many corners.
 static int32_t thin_out(hull *hull, const double (*points)[3], int32_t count, double tolerance,
                         double (*kept)[3]) {
-    int32_t made = take_farthest(points, count, kept);
-    for (int32_t next = 0; next < count;) {
-        if (made > POINTS_MOST - ADDED_LEAST) return POINTS_MOST + 1;
-        while (made < POINTS_MOST && next < count) memcpy(kept[made++], points[next++], sizeof *kept);
-        made = keep_corners(hull, (const double(*)[3])kept, made, tolerance, kept);
+    int32_t made = take_farthest(points, count, kept), next = 0;
+    for (int round = 0; round < ROUNDS_MOST; round++) {
+        for (; made < POINTS_MOST && next < count; next++)
+            if (round == 0 || is_outside(hull, points[next]))
+                memcpy(kept[made++], points[next], sizeof *kept);
+        if (next == count) return made;
+        if (!make_hull(hull, (const double(*)[3])kept, made, tolerance)) return -1;
+        made = keep_corners(hull, kept, made);
     }
-    return made;
+    return -1;
 }
 
 void enf_body_make(enf_body *body, const double (*points)[3], int32_t count, double tolerance) {
@@ -310,10 +320,8 @@ void enf_body_make(enf_body *body, const double (*points)[3], int32_t count, dou
     double kept[POINTS_MOST][3];
     find_box(body, points, count);
     body->edge_count = 0;
-    if (count > POINTS_MOST) {
-        count = thin_out(&hull, points, count, tolerance * ADDED_LEAST / count, kept);
-        points = (const double(*)[3])kept;
-    }
-    if (!make_hull(&hull, points, count, tolerance) || !take_hull(body, &hull)) take_box(body);
+    const int32_t made = thin_out(&hull, points, count, tolerance / ROUNDS_MOST, kept);
+    if (made < 0 || !make_hull(&hull, (const double(*)[3])kept, made, tolerance) || !take_hull(body, &hull))
+        take_box(body);
     close_edges(body);
 }

@@ -26,7 +26,8 @@ typedef struct face {
 
 typedef struct search {
     const enf_shapes *shapes;
-    enf_whole_corners whole;
+    bool exactly;
+    enf_whole_corners whole; ///< if so
     enf_bits *found;
     face *faces; ///< per opening
     enf_follows follows;
@@ -49,13 +50,13 @@ static answer has_corner(const enf_shapes *shapes, int32_t portal, int32_t openi
     return highest > shapes->tolerance ? YES : highest < -shapes->tolerance ? NO : UNSURE;
 }
 
-/// The same, sure: in front, or behind, of a portal.
+/// The same, decided: in front, or behind, of a portal.
 static bool reaches(const search *search, int32_t portal, int32_t opening, bool in_front) {
     const face *plane = &search->faces[portal >> 1], *face = &search->faces[opening];
     const int side = (portal & 1) == in_front;
     if (plane->towards[0] >= 0) return face->ends[plane->towards[side]] > plane->end[side];
     const answer quick = has_corner(search->shapes, portal, opening, in_front ? 1 : -1);
-    if (quick != UNSURE) return quick == YES;
+    if (quick != UNSURE || !search->exactly) return quick == YES;
     return enf_opening_is_beyond(&search->whole, portal >> 1, opening, side ? -1 : 1);
 }
 
@@ -179,8 +180,9 @@ static bool make_search(search *search, int threads) {
         flooder->done = enf_array_new(search->found->row_words, sizeof *flooder->done);
         if (!flooder->queue || !flooder->done) return false;
     }
-    return search->flooders && enf_whole_corners_make(&search->whole, search->shapes->graph) &&
-           make_faces(search) && enf_follows_make(&search->follows, search->shapes->graph, follows, search);
+    if (search->exactly && !enf_whole_corners_make(&search->whole, search->shapes->graph)) return false;
+    return search->flooders && make_faces(search) &&
+           enf_follows_make(&search->follows, search->shapes->graph, follows, search);
 }
 
 static void free_search(search *search, int threads) {
@@ -194,10 +196,10 @@ static void free_search(search *search, int threads) {
     enf_whole_corners_free(&search->whole);
 }
 
-enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, const enf_crew *crew,
+enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, bool exactly, const enf_crew *crew,
                            enf_error *error) {
     int32_t portals = 2 * shapes->graph->opening_count;
-    search search = {.shapes = shapes, .found = facing};
+    search search = {.shapes = shapes, .exactly = exactly, .found = facing};
     bool good = enf_bits_new(facing, portals, portals) && make_search(&search, crew->threads);
     bool done = good && enf_parallel_for(crew, portals, flood_job, &search);
     free_search(&search, crew->threads);

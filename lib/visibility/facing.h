@@ -9,9 +9,10 @@
 
 /// Bit q of row p: portal q can be reached from portal p through portals that are all in front of p and have
 /// p behind them, each in front of the one before it. Symmetric: q is in p's row exactly if the twin of p is
-/// in the row of the twin of q. No pair that a line passes, by however little, is left out. *facing is made;
-/// free it in any case.
-enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, const enf_crew *crew,
+/// in the row of the twin of q. `exactly`: no pair that a line passes, by however little, is left out;
+/// else what reaches beyond a plane by no more than the tolerance of the shapes may count as in it. *facing
+/// is made; free it in any case.
+enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, bool exactly, const enf_crew *crew,
                            enf_error *error);
 
 /// Clears every bit q of row p without bit twin(p) of row twin(q).

@@ -139,7 +139,8 @@ static enf_status face(ladder *ladder, enf_error *error) {
     if (!enf_shapes_make(&ladder->shapes, ladder->graph) ||
         !enf_pluecker_make(&ladder->pluecker, ladder->graph))
         return enf_fail_memory(error, "the portals");
-    enf_status status = enf_facing_find(&ladder->facing, &ladder->shapes, &place->crew, error);
+    const bool exactly = !ladder->options->bodies; // who asks for bodies has a partition, with a tolerance
+    enf_status status = enf_facing_find(&ladder->facing, &ladder->shapes, exactly, &place->crew, error);
     if (!status && ladder->options->method == ENF_METHOD_FACING)
         set_cells(ladder->graph, &ladder->facing, &ladder->visibility->pvs);
     return status;
