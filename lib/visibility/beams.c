@@ -45,7 +45,8 @@ struct enf_beams {
     const enf_shapes *shapes;
     const enf_bits *facing;
     const enf_follows *follows;
-    uint64_t *open; ///< a row of portals: those that the source faces and that are not reached as a whole
+    uint64_t *open; ///< a row of portals: those that the source may see and that are not reached as a whole
+    size_t open_words;
     beam *beams;
     kept_window *kept; ///< those of this cast come first
     int32_t kept_count;
@@ -65,7 +66,9 @@ enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const
     beams->shapes = shapes;
     beams->facing = facing;
     beams->follows = follows;
-    beams->open = enf_array_new(facing->row_words, sizeof *beams->open);
+    beams->open_words = portals / 64 + 1;
+    if (facing) beams->open_words = facing->row_words;
+    beams->open = enf_array_new(beams->open_words, sizeof *beams->open);
     beams->beams = enf_array_zeroed(portals, sizeof *beams->beams);
     beams->kept = enf_array_new(portals, sizeof *beams->kept);
     beams->reached = enf_array_new(portals, sizeof *beams->reached);
@@ -293,7 +296,7 @@ int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals
     begin(beams);
     beams->source.portal = source;
     beams->source.bodies = NULL;
-    memcpy(beams->open, enf_bits_row(beams->facing, source), beams->facing->row_words * sizeof(uint64_t));
+    memcpy(beams->open, enf_bits_row(beams->facing, source), beams->open_words * sizeof *beams->open);
     spread(beams, source);
     spread_all(beams);
     *portals = beams->reached;
@@ -307,19 +310,13 @@ static void leave(enf_beams *beams, int32_t cell) {
         reach(beams, graph->cell_portals[k], ENF_REMAINS_WHOLE);
 }
 
-/// What can be seen through the portals of a cell, and who has bodies there.
-static void open_cell(enf_beams *beams, int32_t cell) {
-    const enf_portal_graph *graph = beams->shapes->graph;
-    const source *source = &beams->source;
+static void meet_cell(const source *source, int32_t cell) {
     for (int32_t k = source->bodies->cell_first[cell]; k < source->bodies->cell_first[cell + 1]; k++)
         enf_bit_set(source->met, source->bodies->owner[k]);
-    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
-        const uint64_t *row = enf_bits_row(beams->facing, graph->cell_portals[k]);
-        for (size_t w = 0; w < beams->facing->row_words; w++) beams->open[w] |= row[w];
-    }
 }
 
-void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met) {
+/// Begins with the bodies of an owner, in all their cells.
+static void begin_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met) {
     const int32_t *first = &bodies->owner_first[owner], whole = bodies->whole_first[owner];
     begin(beams);
     if (first[0] == first[1]) return;
@@ -328,8 +325,27 @@ void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t ow
     beams->source.met = met;
     enf_body_make(&beams->source.body, (const double(*)[3])(bodies->wholes + whole),
                   bodies->whole_first[owner + 1] - whole, beams->shapes->tolerance / 8);
-    memset(beams->open, 0, beams->facing->row_words * sizeof *beams->open);
-    for (int32_t k = first[0]; k < first[1]; k++) open_cell(beams, bodies->cells[k]);
+    memset(beams->open, -1, beams->open_words * sizeof *beams->open);
+    for (int32_t k = first[0]; k < first[1]; k++) meet_cell(&beams->source, bodies->cells[k]);
     for (int32_t k = first[0]; k < first[1]; k++) leave(beams, bodies->cells[k]);
+}
+
+void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met) {
+    begin_owner(beams, bodies, owner, met);
     spread_all(beams);
+}
+
+void enf_beams_face_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met) {
+    const enf_follows *follows = beams->follows;
+    begin_owner(beams, bodies, owner, met);
+    for (int32_t i = 0; i < beams->reached_count; i++) {
+        const int32_t via = beams->reached[i];
+        meet_cell(&beams->source, enf_portal_to(beams->shapes->graph, via));
+        for (int32_t k = follows->first[via]; k < follows->first[via + 1]; k++) {
+            const int32_t next = follows->portals[k];
+            if (beams->beams[next].state != BEAM_NONE || !is_passable(beams, next)) continue;
+            beams->beams[next].state = BEAM_REACHED;
+            beams->reached[beams->reached_count++] = next;
+        }
+    }
 }

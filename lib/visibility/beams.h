@@ -18,8 +18,9 @@
 /// Scratch memory of one thread.
 typedef struct enf_beams enf_beams;
 
-/// Null without memory. What they are made from is shared and must stay. Of the pairs of portals in `facing`
-/// no others are tried; `follows` are those of them that can come right after each other.
+/// Null without memory. What they are made from is shared and must stay. Beams from portals try no other
+/// pairs than those in `facing`, which may be null if there are to be none; `follows` are those portals that
+/// can come right after each other.
 enf_beams *enf_beams_new(const enf_shapes *shapes, const enf_bits *facing, const enf_follows *follows);
 void enf_beams_free(enf_beams *beams);
 
@@ -31,6 +32,9 @@ int32_t enf_beams_cast(enf_beams *beams, int32_t source, const int32_t **portals
 /// In *met, a row of bits that was zero, those owners are set whose bodies the beams meet, and those with
 /// bodies in the same cells.
 void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met);
+
+/// The same without beams: through all portals that have some of the owner's bodies behind them.
+void enf_beams_face_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met);
 
 /// What they reach of one of these portals.
 void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window);

@@ -6,6 +6,7 @@
 #include "base/timer.h"
 #include "visibility/beams.h"
 #include "visibility/coding.h"
+#include "visibility/facing.h"
 
 #include <stdlib.h>
 
@@ -20,36 +21,12 @@ typedef struct casting {
     double deadline;
     enf_beams **beams;    ///< per thread
     cast_result *results; ///< per owner
-    int64_t *cost;        ///< per owner: the portals that face those of its cells
+    int64_t *cost;        ///< per owner: the portals of its cells
     bool *begun;          ///< per owner
     enf_follows follows;
 } casting;
 
 // ---------------------------------------------------------------------------------------------- jobs
-
-static void meet_cell(uint64_t *met, const enf_bodies *bodies, int32_t cell) {
-    for (int32_t k = bodies->cell_first[cell]; k < bodies->cell_first[cell + 1]; k++)
-        enf_bit_set(met, bodies->owner[k]);
-}
-
-/// For bodies in a cell that had no turn: they see what faces its portals.
-static void meet_facing(const enf_body_cast *cast, int32_t cell, uint64_t *met) {
-    const enf_portal_graph *graph = cast->shapes->graph;
-    meet_cell(met, cast->bodies, cell);
-    for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
-        int32_t portal = graph->cell_portals[k];
-        const uint64_t *row = enf_bits_row(cast->facing, portal);
-        meet_cell(met, cast->bodies, enf_portal_to(graph, portal));
-        for (int32_t q = -1; (q = enf_bit_next(row, cast->facing->row_words, q + 1)) >= 0;)
-            meet_cell(met, cast->bodies, enf_portal_to(graph, q));
-    }
-}
-
-static void meet_late(const enf_body_cast *cast, int32_t owner) {
-    const enf_bodies *bodies = cast->bodies;
-    for (int32_t k = bodies->owner_first[owner]; k < bodies->owner_first[owner + 1]; k++)
-        meet_facing(cast, bodies->cells[k], enf_bits_row(&cast->met, owner));
-}
 
 static enf_status run_owner(void *user, int32_t owner, int thread, bool *late, enf_error *error) {
     const casting *casting = user;
@@ -57,9 +34,9 @@ static enf_status run_owner(void *user, int32_t owner, int thread, bool *late, e
     enf_beams *beams = casting->beams[thread];
     cast_result *result = &casting->results[owner];
     int64_t visits = enf_beams_visits(beams);
-    *late = result->late = enf_timer_now() > casting->deadline;
-    if (result->late)
-        meet_late(cast, owner);
+    *late = result->late = !cast->by_facing && enf_timer_now() > casting->deadline;
+    if (result->late || cast->by_facing)
+        enf_beams_face_owner(beams, cast->bodies, owner, enf_bits_row(&cast->met, owner));
     else
         enf_beams_cast_owner(beams, cast->bodies, owner, enf_bits_row(&cast->met, owner));
     result->visits = enf_beams_visits(beams) - visits;
@@ -86,8 +63,8 @@ static bool decode_owner(void *user, int32_t owner, enf_reader *reader) {
 
 // ---------------------------------------------------------------------------------------------- all
 
-static bool faces(const void *user, int32_t portal, int32_t next) {
-    return enf_bit_get(enf_bits_row(user, portal), next);
+static bool follows(const void *user, int32_t portal, int32_t next) {
+    return enf_portals_face(user, portal, next);
 }
 
 static bool make_casting(casting *casting, int threads) {
@@ -98,11 +75,11 @@ static bool make_casting(casting *casting, int threads) {
     casting->begun = enf_array_zeroed((size_t)owners, sizeof *casting->begun);
     casting->beams = enf_array_zeroed((size_t)threads, sizeof *casting->beams);
     if (!enf_bits_new(&cast->met, owners, owners) ||
-        !enf_follows_make(&casting->follows, cast->shapes->graph, faces, cast->facing) || !casting->results ||
-        !casting->cost || !casting->begun || !casting->beams)
+        !enf_follows_make(&casting->follows, cast->shapes->graph, follows, cast->shapes) ||
+        !casting->results || !casting->cost || !casting->begun || !casting->beams)
         return false;
     for (int i = 0; i < threads; i++) {
-        casting->beams[i] = enf_beams_new(cast->shapes, cast->facing, &casting->follows);
+        casting->beams[i] = enf_beams_new(cast->shapes, NULL, &casting->follows);
         if (!casting->beams[i]) return false;
     }
     return true;
@@ -117,27 +94,21 @@ static void free_casting(casting *casting, int threads) {
     enf_follows_free(&casting->follows);
 }
 
-/// False without memory.
-static bool find_cost(const casting *casting) {
+static void find_cost(const casting *casting) {
     const enf_portal_graph *graph = casting->cast->shapes->graph;
-    const enf_bits *facing = casting->cast->facing;
     const enf_bodies *bodies = casting->cast->bodies;
-    int64_t *of_cell = enf_array_zeroed((size_t)graph->cell_count, sizeof *of_cell);
-    if (!of_cell) return false;
-    for (int32_t p = 0; p < facing->row_count; p++)
-        of_cell[enf_portal_from(graph, p)] += enf_bits_count(enf_bits_row(facing, p), facing->row_words);
     for (int32_t o = 0; o < bodies->owner_count; o++)
-        for (int32_t k = bodies->owner_first[o]; k < bodies->owner_first[o + 1]; k++)
-            casting->cost[o] += 1 + of_cell[bodies->cells[k]];
-    free(of_cell);
-    return true;
+        for (int32_t k = bodies->owner_first[o]; k < bodies->owner_first[o + 1]; k++) {
+            const int32_t *portals = &graph->cell_portal[bodies->cells[k]];
+            casting->cost[o] += 1 + portals[1] - portals[0];
+        }
 }
 
 static void sum_up(const casting *casting) {
     enf_body_cast *cast = casting->cast;
     for (int32_t o = 0; o < cast->bodies->owner_count; o++) {
         bool none = casting->cost[o] > 0 && !casting->begun[o];
-        if (none) meet_late(cast, o);
+        if (none) enf_beams_face_owner(casting->beams[0], cast->bodies, o, enf_bits_row(&cast->met, o));
         cast->visits += casting->results[o].visits;
         cast->owners_budgeted += none || casting->results[o].late;
     }
@@ -162,9 +133,10 @@ static uint64_t find_key(const enf_bodies *bodies) {
 enf_status enf_body_cast_run(enf_body_cast *cast, enf_workplace *place, enf_error *error) {
     casting casting = {.cast = cast, .deadline = place->deadline};
     int threads = place->crew.threads;
-    bool made = make_casting(&casting, threads) && find_cost(&casting);
+    bool made = make_casting(&casting, threads);
     enf_status status = made ? ENF_OK : enf_fail_memory(error, "the beams");
     if (!status) {
+        find_cost(&casting);
         const enf_work work = {.stage = ENF_STAGE_BODIES,
                                .key = find_key(cast->bodies),
                                .cell_count = cast->bodies->owner_count,

@@ -10,13 +10,13 @@
 
 typedef struct enf_body_cast {
     const enf_shapes *shapes;
-    const enf_bits *facing;
     const enf_bodies *bodies;
+    bool by_facing; ///< all owners see all that faces them; no beams are cast
 
     // Made; free them in any case.
     enf_bits met; ///< bit j of row i: the beams of owner i meet a body of owner j, and the other way round
     int64_t visits;
-    int32_t owners_budgeted; ///< whose turn came too late: those see all that faces their cells
+    int32_t owners_budgeted; ///< whose turn came too late: those see all that faces them
 } enf_body_cast;
 
 enf_status enf_body_cast_run(enf_body_cast *cast, enf_workplace *place, enf_error *error);

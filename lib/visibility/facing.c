@@ -50,6 +50,11 @@ static answer has_corner(const enf_shapes *shapes, int32_t portal, int32_t openi
     return highest > shapes->tolerance ? YES : highest < -shapes->tolerance ? NO : UNSURE;
 }
 
+bool enf_portals_face(const enf_shapes *shapes, int32_t portal, int32_t other) {
+    return portal >> 1 != other >> 1 && has_corner(shapes, portal, other >> 1, 1) == YES &&
+           has_corner(shapes, other, portal >> 1, -1) == YES;
+}
+
 /// The same, decided: in front, or behind, of a portal.
 static bool reaches(const search *search, int32_t portal, int32_t opening, bool in_front) {
     const face *plane = &search->faces[portal >> 1], *face = &search->faces[opening];

@@ -15,6 +15,10 @@
 enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, bool exactly, const enf_crew *crew,
                            enf_error *error);
 
+/// Could a line pass the one portal and then the other, as far as planes tell, by more than the tolerance of
+/// the shapes?
+bool enf_portals_face(const enf_shapes *shapes, int32_t portal, int32_t other);
+
 /// Clears every bit q of row p without bit twin(p) of row twin(q).
 void enf_facing_symmetrise(enf_bits *bits);
 

@@ -123,11 +123,16 @@ static bool add_neighbours(enf_sightings *sightings, const enf_portal_graph *gra
 
 // ---------------------------------------------------------------------------------------------- rungs
 
-/// Two matrices of all portals at a time are most of what is needed. A system that lends more memory than it
-/// has would kill us when they are filled.
-static enf_status refuse_too_large(const enf_portal_graph *graph, enf_error *error) {
+/// Two matrices of all portals at a time are most of what is needed; bodies that are not followed further
+/// need one of their owners. A system that lends more memory than it has would kill us when they are filled.
+static enf_status refuse_too_large(const enf_portal_graph *graph, const enf_visibility_options *options,
+                                   enf_error *error) {
     const char *limiter;
-    double portals = 2.0 * graph->opening_count, bytes = 2 * portals * portals / 8 + 2000 * portals;
+    const bool is_by_owners = options->bodies && options->method <= ENF_METHOD_HOURGLASS;
+    const double portals = 2.0 * graph->opening_count,
+                 rows = is_by_owners ? options->bodies->owner_count : 2 * portals,
+                 columns = is_by_owners ? options->bodies->owner_count : portals,
+                 bytes = rows * columns / 8 + 2000 * portals * (is_by_owners ? options->threads : 1);
     if (bytes < (double)enf_memory_limit(&limiter)) return ENF_OK;
     return enf_fail(error, ENF_NO_RESOURCES,
                     "%" PRId32 " openings take %.3g MB, more than %s allows; split the world, or use reach",
@@ -136,9 +141,7 @@ static enf_status refuse_too_large(const enf_portal_graph *graph, enf_error *err
 
 static enf_status face(ladder *ladder, enf_error *error) {
     enf_workplace *place = place_for(ladder, "facing");
-    if (!enf_shapes_make(&ladder->shapes, ladder->graph) ||
-        !enf_pluecker_make(&ladder->pluecker, ladder->graph))
-        return enf_fail_memory(error, "the portals");
+    if (!enf_pluecker_make(&ladder->pluecker, ladder->graph)) return enf_fail_memory(error, "the portals");
     const bool exactly = !ladder->options->bodies; // who asks for bodies has a partition, with a tolerance
     enf_status status = enf_facing_find(&ladder->facing, &ladder->shapes, exactly, &place->crew, error);
     if (!status && ladder->options->method == ENF_METHOD_FACING)
@@ -149,14 +152,14 @@ static enf_status face(ladder *ladder, enf_error *error) {
 /// With bodies, beams come from those.
 static enf_status cast_bodies(ladder *ladder, enf_error *error) {
     enf_visibility *visibility = ladder->visibility;
-    enf_workplace *place = place_for(ladder, "hourglass");
+    const bool by_facing = ladder->options->method == ENF_METHOD_FACING;
+    enf_workplace *place = place_for(ladder, by_facing ? "facing" : "hourglass");
     enf_body_cast cast = {
-        .shapes = &ladder->shapes, .facing = &ladder->facing, .bodies = ladder->options->bodies};
+        .shapes = &ladder->shapes, .bodies = ladder->options->bodies, .by_facing = by_facing};
     enf_status status = enf_body_cast_run(&cast, place, error);
     visibility->met = cast.met;
     visibility->body_visits = cast.visits;
     visibility->cells_budgeted = cast.owners_budgeted;
-    if (!status) set_cells(ladder->graph, &ladder->facing, &visibility->pvs);
     return status;
 }
 
@@ -251,11 +254,14 @@ static enf_status open_checkpoint(ladder *ladder, enf_error *error) {
 static enf_status climb(ladder *ladder, enf_error *error) {
     enf_method method = ladder->options->method;
     if (method == ENF_METHOD_REACH) return reach(ladder, error);
-    enf_status status = face(ladder, error);
-    const bool has_bodies = ladder->options->bodies != NULL;
-    if (!status && method >= ENF_METHOD_HOURGLASS && has_bodies) status = cast_bodies(ladder, error);
-    if (!status && method >= (has_bodies ? ENF_METHOD_LP : ENF_METHOD_HOURGLASS))
-        status = cast(ladder, error);
+    const bool made = enf_shapes_make(&ladder->shapes, ladder->graph);
+    enf_status status = made ? ENF_OK : enf_fail_memory(error, "the portals");
+    if (!status && ladder->options->bodies) {
+        status = cast_bodies(ladder, error);
+        if (status || method <= ENF_METHOD_HOURGLASS) return status;
+    }
+    if (!status) status = face(ladder, error);
+    if (!status && method >= ENF_METHOD_HOURGLASS) status = cast(ladder, error);
     if (!status && method >= ENF_METHOD_LP) status = settle(ladder, error);
     return status ? status : take_witnesses(ladder, error);
 }
@@ -270,7 +276,7 @@ enf_status enf_visibility_run(enf_visibility *visibility, const enf_portal_graph
         .visibility = visibility,
         .place = {.deadline = options->budget_seconds > 0 ? started + options->budget_seconds : INFINITY,
                   .team = options->team}};
-    enf_status status = options->method > ENF_METHOD_REACH ? refuse_too_large(graph, error) : ENF_OK;
+    enf_status status = options->method > ENF_METHOD_REACH ? refuse_too_large(graph, options, error) : ENF_OK;
     if (!status) status = enf_pvs_new(&visibility->pvs, graph->cell_count, error);
     if (!status) status = open_checkpoint(&ladder, error);
     if (!status) status = climb(&ladder, error);

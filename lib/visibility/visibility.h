@@ -49,10 +49,10 @@ typedef struct enf_visibility_options {
 
 typedef struct enf_visibility {
     enf_method method;
-    enf_pvs pvs; ///< symmetric; with bodies, by `hourglass` no more than what faces each other: see `met`
+    enf_pvs pvs; ///< symmetric; with bodies, by `facing` and `hourglass` just that cells see themselves
 
-    /// With bodies, from the rung hourglass on: bit j of row i: bodies of owners i and j may see each other;
-    /// symmetric.
+    /// With bodies, from the rung facing on: bit j of row i: bodies of owners i and j may see each other;
+    /// symmetric. As a set it is no rung: what `hourglass` finds of it, lp and exact do not look at again.
     enf_bits met;
 
     // If wanted: one for each unordered pair of cells that was proved visible.

@@ -44,15 +44,27 @@ static void see_for_lost(enf_pvs *cells, const enf_world_air *air, const enf_fil
             if (enf_pvs_get(cells, air->parts.lost[i], other)) enf_pvs_set(cells, other, air->parts.lost[i]);
 }
 
+static void take_owners(enf_pvs *cells, const enf_bits *met) {
+    for (int32_t i = 0; i < cells->cell_count; i++)
+        for (int32_t k = -1; (k = enf_bit_next(enf_bits_row(met, i), met->row_words, k + 1)) >= 0;)
+            enf_pvs_set(cells, i, k);
+}
+
+static void join_all_leafs(enf_pvs *cells, const enf_visibility *found, const enf_bodies *bodies) {
+    for (int32_t leaf = 0; leaf < found->pvs.cell_count; leaf++)
+        for (int32_t other = 0; other < found->pvs.cell_count; other++)
+            if (enf_pvs_get(&found->pvs, leaf, other)) join_leafs(cells, found, bodies, leaf, other);
+}
+
 static enf_status find_cells(enf_visibility *found, const enf_world_air *air, const enf_file_view *view,
                              enf_error *error) {
     enf_pvs cells;
     enf_status status = enf_pvs_new(&cells, view->cell_count, error);
     if (!status) {
-        for (int32_t leaf = 0; leaf < found->pvs.cell_count; leaf++)
-            for (int32_t other = 0; other < found->pvs.cell_count; other++)
-                if (enf_pvs_get(&found->pvs, leaf, other))
-                    join_leafs(&cells, found, &air->parts.bodies, leaf, other);
+        if (found->method == ENF_METHOD_FACING || found->method == ENF_METHOD_HOURGLASS)
+            take_owners(&cells, &found->met);
+        else
+            join_all_leafs(&cells, found, &air->parts.bodies);
         see_neighbours(&cells, view);
         see_for_lost(&cells, air, view);
     }
