@@ -4,6 +4,7 @@
 #include "base/array.h"
 #include "format/frame.h"
 #include "visibility/distinct.h"
+#include "visibility/fine_vertices.h"
 #include "visibility/flat_hull.h"
 #include "visibility/window.h"
 
@@ -142,41 +143,31 @@ static bool sink(slicer *slicer, int32_t at, const body *given) {
     return put_piece(slicer, -1 - at, &body);
 }
 
-/// The corners of a fine cell, each once, as the only body of the stack.
-static bool take_fine_cell(slicer *slicer, const enf_file_view *view, int32_t fine, int32_t **vertices,
-                           size_t *capacity, body *body) {
-    int32_t count = 0;
-    for (int32_t k = view->fine_facet[fine]; k < view->fine_facet[fine + 1]; k++) {
-        const int64_t *offset = &view->facet_offset[view->fine_facets[k]];
-        if (!enf_array_reserve(*vertices, *capacity, count + offset[1] - offset[0])) return false;
-        for (int64_t i = offset[0]; i < offset[1]; i++) {
-            int32_t vertex = view->facet_corners[i].vertex, seen = 0;
-            while (seen < count && (*vertices)[seen] != vertex) seen++;
-            if (seen == count) (*vertices)[count++] = vertex;
-        }
-    }
+/// The corners of a fine cell as the only body of the stack.
+static bool take_fine_cell(slicer *slicer, const enf_file_view *view, int32_t fine, enf_fine_vertices *list,
+                           body *body) {
+    if (!enf_fine_vertices_take(list, view, fine)) return false;
     slicer->stack_count = 0;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < list->count; i++) {
         double corner[3];
-        enf_view_to_world(view, view->vertex_position[(*vertices)[i]], corner);
+        enf_view_to_world(view, view->vertex_position[list->vertices[i]], corner);
         if (!push_corner(slicer, corner)) return false;
     }
-    *body = (struct body){.count = count};
+    *body = (struct body){.count = list->count};
     return true;
 }
 
 static bool slice_all(slicer *slicer, const enf_file_view *view) {
-    int32_t *vertices = NULL;
-    size_t capacity = 0;
+    enf_fine_vertices list = {0};
     bool good = true;
     int32_t root = slicer->tree->node_count > 0 ? 0 : -1;
     for (int32_t fine = 0; good && fine < view->fine_count; fine++) {
         body body;
         slicer->cell = view->fine_cell[fine];
         if (slicer->cell < 0) continue;
-        good = take_fine_cell(slicer, view, fine, &vertices, &capacity, &body) && sink(slicer, root, &body);
+        good = take_fine_cell(slicer, view, fine, &list, &body) && sink(slicer, root, &body);
     }
-    free(vertices);
+    free(list.vertices);
     return good;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "visibility/world_air.h"
 
+#include "visibility/air_fine.h"
 #include "visibility/air_openings.h"
 #include "visibility/world_graph.h"
 
@@ -23,23 +24,26 @@ static enf_status partition(enf_world_air *air, const enf_air_tree *tree, const 
     return status;
 }
 
-/// Walls of rock that share no planes make more leafs than cells. Beams through leafs take about as many
-/// times longer as there are more openings, and more memory by the square; they are not worth more than this.
+/// Walls of rock that share no planes make more leafs than cells, and more than there are fine cells in the
+/// end. Beams through leafs take about as many times longer as there are more openings.
 static const double leafs_worth = 4, leafs_most = 8000;
 
 static bool are_worth_it(double leafs, double portals) {
     return leafs <= portals || (leafs <= leafs_worth * (1 + portals) && leafs <= leafs_most);
 }
 
-/// Portals of cells are worth looking at where there are not more of them than of leafs.
-static void choose(enf_world_air *air, bool is_partitioned) {
-    double portals = air->portals.opening_count, leafs = air->leafs.opening_count;
-    air->uses_leafs = is_partitioned && are_worth_it(leafs, portals);
-    air->uses_portals = !air->uses_leafs || portals <= leafs;
+/// With leafs of some kind, portals of cells are worth looking at where a partition has more openings.
+static enf_status choose(enf_world_air *air, bool is_partitioned, const enf_file_view *view,
+                         enf_error *error) {
+    const double portals = air->portals.opening_count, leafs = air->leafs.opening_count;
+    const bool has_partition = is_partitioned && are_worth_it(leafs, portals);
+    air->uses_leafs = view->has_exact;
+    air->uses_portals = !air->uses_leafs || (has_partition && portals <= leafs);
     if (!air->uses_portals) enf_portal_graph_free(&air->portals);
-    if (air->uses_leafs) return;
+    if (has_partition || !air->uses_leafs) return ENF_OK;
     enf_portal_graph_free(&air->leafs);
     enf_air_parts_free(&air->parts);
+    return enf_air_fine_make(&air->leafs, &air->parts, view, error);
 }
 
 enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, enf_error *error) {
@@ -55,7 +59,7 @@ enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, enf
         if (outcome == ENF_AIR_NO_MEMORY) status = enf_fail_memory(error, "the partition of the air");
     }
     if (!status && outcome == ENF_AIR_DONE) status = partition(air, &tree, &walls, view, size, error);
-    if (!status) choose(air, outcome == ENF_AIR_DONE);
+    if (!status) status = choose(air, outcome == ENF_AIR_DONE, view, error);
     enf_air_tree_free(&tree);
     enf_walls_free(&walls);
     return status;

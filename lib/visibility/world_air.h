@@ -4,7 +4,8 @@
 //
 // Cells are concave and hold walls, so that their portals alone tell little of what hides what. A partition
 // of the air by its own walls has convex leafs; in buildings, where walls share planes, fewer of them than
-// there are cells. What leafs see tells what the parts of cells in them see.
+// there are cells. Elsewhere the fine cells are taken for leafs. What leafs see tells what the parts of cells
+// in them see.
 #ifndef ENF_VISIBILITY_WORLD_AIR_H
 #define ENF_VISIBILITY_WORLD_AIR_H
 
@@ -12,7 +13,8 @@
 #include "visibility/portal_graph.h"
 
 typedef struct enf_world_air {
-    bool uses_portals, uses_leafs; ///< at least one; what is left out costs more than it could tell
+    bool uses_portals, uses_leafs; ///< at least one; what is left out costs more than it could tell, or is
+                                   ///< not in the file
     enf_portal_graph portals;      ///< between the world's cells; empty if it is not used
     enf_portal_graph leafs;        ///< likewise
     enf_air_parts parts;           ///< of the world's cells, in the leafs
