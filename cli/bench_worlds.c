@@ -50,7 +50,7 @@ static enf_status throw_lines(const request *request, const enf_file_view *view,
     enf_world_lines lines = {0};
     enf_world_air air;
     const int64_t most = (int64_t)request->lines;
-    enf_status status = enf_world_air_make(&air, view, error);
+    enf_status status = enf_world_air_make(&air, view, false, error);
     if (!status) status = enf_world_lines_make(&lines, view, 1, error);
     for (int32_t i = 0; !status && i < view->portal_count; i++) // neighbours count as seen
         enf_pvs_set(&lines.seen, view->portals[i].from, view->portals[i].to);
@@ -81,7 +81,7 @@ static enf_status find_sets(const request *request, enf_image *image, row *row, 
     for (int run = 0; run < request->runs && !status; run++) {
         enf_visibility visibility;
         double started = enf_timer_now();
-        status = enf_world_pvs_add(image, &options, &visibility, error);
+        status = enf_world_pvs_add(image, &options, NULL, &visibility, error);
         seconds[run] = enf_timer_now() - started;
         if (!status && run + 1 == request->runs) {
             row->claimed = count_pairs(&visibility.pvs);
@@ -174,7 +174,7 @@ int cli_bench_worlds(int argc, char **argv) {
                          .print = print_row,
                          .print_head = print_head};
     cli_option options[] = {{"--method", 0, CLI_CHOICE, &request.method, "METHOD", "default hourglass",
-                             cli_pvs_methods + 1, false},
+                             cli_pvs_choices + CLI_PVS_METHOD, false},
                             {"--lines", 0, CLI_LENGTH, &request.lines, "N",
                              "at most so many lines a world; default 1e7", NULL, false},
                             {"--runs", 0, CLI_COUNT, &request.runs, "N",

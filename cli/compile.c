@@ -69,17 +69,26 @@ static void warn_of_leak(const cli_job *job, const char *path) {
 
 /// The stage of the recipe that the builder leaves to us: it works on what will be in the file.
 static enf_status find_visibility(cli_job *job, enf_image *image, cli_progress *progress, enf_error *error) {
-    if (job->settings->pvs == 0) return ENF_OK;
+    const int choice = job->settings->pvs;
+    if (choice == CLI_PVS_NONE) return ENF_OK;
     double started = enf_timer_now(), cpu_started = enf_timer_cpu();
-    const enf_visibility_options options = {.method = (enf_method)(job->settings->pvs - 1),
+    const bool is_auto = choice == CLI_PVS_AUTO;
+    const enf_visibility_options options = {.method = is_auto ? ENF_METHOD_HOURGLASS
+                                                              : (enf_method)(choice - CLI_PVS_METHOD),
                                             .threads = job->settings->threads,
                                             .progress = cli_progress_report,
                                             .progress_user = progress};
-    enf_status status = enf_world_pvs_add(image, &options, &job->visibility, error);
+    bool left_out = false;
+    enf_status status =
+        enf_world_pvs_add(image, &options, is_auto ? &left_out : NULL, &job->visibility, error);
     enf_stage_report *stage = &job->build.stages[job->build.stage_count - 1];
     cli_stage_end(stage, started, cpu_started);
-    snprintf(stage->why, sizeof stage->why, "%" PRId64 " pairs of cells, by %s",
-             enf_pvs_pairs(&job->visibility.pvs), cli_pvs_methods[job->settings->pvs]);
+    stage->ran = !left_out;
+    if (left_out)
+        snprintf(stage->why, sizeof stage->why, "it would take long; --pvs hourglass asks for it");
+    else
+        snprintf(stage->why, sizeof stage->why, "%" PRId64 " pairs of cells, by %s",
+                 enf_pvs_pairs(&job->visibility.pvs), enf_method_name(options.method));
     job->seconds += stage->seconds;
     return status;
 }

@@ -15,7 +15,7 @@ const char *const cli_heuristics[] = {"aspect", "aspect-scaled", NULL};
 _Static_assert(sizeof cli_heuristics / sizeof *cli_heuristics == ENF_HEURISTIC_COUNT + 1,
                "one name per heuristic");
 const char *const cli_keeps[] = {"auto", "all", "outside", "spawn", NULL};
-const char *const cli_pvs_methods[] = {"none", "reach", "facing", "hourglass", "lp", "exact", NULL};
+const char *const cli_pvs_choices[] = {"auto", "none", "reach", "facing", "hourglass", "lp", "exact", NULL};
 
 enum { THREADS_MAX = 64 };
 
@@ -59,7 +59,7 @@ static char *print_options(const cli_settings *settings) {
     enf_json_text(&json, "heuristic", cli_heuristics[settings->heuristic]);
     enf_json_text(&json, "stop", settings->stop);
     enf_json_text(&json, "keep", cli_keeps[settings->keep]);
-    enf_json_text(&json, "pvs", cli_pvs_methods[settings->pvs]);
+    enf_json_text(&json, "pvs", cli_pvs_choices[settings->pvs]);
     put_tolerance(&json, "weld", settings->weld);
     put_tolerance(&json, "plane_tolerance", settings->plane_tolerance);
     enf_json_bool(&json, "plain_cells", settings->plain_cells);

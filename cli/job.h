@@ -26,7 +26,10 @@ int cli_default_threads(void);
 void cli_settings_free(cli_settings *settings);
 
 extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const cli_keeps[],
-                                                                              *const cli_pvs_methods[];
+                                                                              *const cli_pvs_choices[];
+
+/// What comes first of cli_pvs_choices; from the last of these on, they are methods.
+enum { CLI_PVS_AUTO, CLI_PVS_NONE, CLI_PVS_METHOD };
 
 /// Rows of an option table that fill the cli_settings `s`.
 #define CLI_SETTINGS_OPTIONS(s)                                                                              \
@@ -43,8 +46,8 @@ extern const char *const cli_tetrahedralizers[], *const cli_heuristics[], *const
         {"--spawn", 0,    CLI_POINTS, &(s).spawns, "X,Y,Z", "a point that is in a room; may be repeated",    \
          NULL,      false},                                                                                  \
         {"--pvs",         0,        CLI_CHOICE,                                                              \
-         &(s).pvs,        "METHOD", "none (default), reach, facing, hourglass, lp, exact",                   \
-         cli_pvs_methods, false},                                                                            \
+         &(s).pvs,        "METHOD", "auto (default), none, reach, facing, hourglass, lp, exact",             \
+         cli_pvs_choices, false},                                                                            \
         {"--exclude",  0,      CLI_TEXTS,                                                                    \
          &(s).exclude, "GLOB", "leave out groups whose name matches; may be repeated",                       \
          NULL,         false},                                                                               \
@@ -83,7 +86,7 @@ typedef struct cli_job {
     enf_build_options options;
     char *options_json; ///< what shapes the result, on one line
     enf_build build;
-    enf_visibility visibility; ///< if settings->pvs is not "none"
+    enf_visibility visibility; ///< if there is one in the world
     enf_stage_report read, write;
     double seconds;
     uint64_t peak_bytes, file_size;

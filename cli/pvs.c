@@ -137,7 +137,7 @@ static enf_status write_outputs(const request *request, const cli_pvs_result *re
 static enf_status find_in_world(cli_pvs_result *result, enf_error *error) {
     enf_world_air air;
     const enf_file_view *view = enf_world_file(result->world);
-    enf_status status = enf_world_air_make(&air, view, error);
+    enf_status status = enf_world_air_make(&air, view, false, error);
     if (!status) status = enf_world_visibility_run(&result->visibility, &air, view, &result->options, error);
     enf_world_air_free(&air);
     return status;
@@ -274,8 +274,7 @@ static int run_one(int argc, char **argv, const enf_team *team) {
         {"--output", 'o', CLI_TEXT, &request.output, "OUT", "the text file to write", NULL, false},
         {"--method", 0, CLI_CHOICE, &request.method, "METHOD",
          "reach, facing, hourglass, lp or exact (default), from cheap to exact",
-         cli_pvs_methods + 1, // without "none"
-         false},
+         cli_pvs_choices + CLI_PVS_METHOD, false},
         {"--threads", 0, CLI_COUNT, &request.threads, "N", "default: one per core; the result is the same",
          NULL, false},
         {"--budget", 0, CLI_SECONDS, &request.budget, "TIME",

@@ -137,8 +137,9 @@ static void put_graph(enf_json *json, const cli_job *job, const cli_counts *coun
     enf_json_whole(json, "spawns", build->regions.spawn_count);
     enf_json_whole(json, "spawns_in_cells", counts->spawns_in_cells);
     enf_json_begin_object(json, "pvs");
-    enf_json_text(json, "method", cli_pvs_methods[job->settings->pvs]);
-    enf_json_whole(json, "pairs", job->settings->pvs ? enf_pvs_pairs(&job->visibility.pvs) : 0);
+    const enf_pvs *pvs = &job->visibility.pvs;
+    enf_json_text(json, "method", pvs->rows ? enf_method_name(job->visibility.method) : "none");
+    enf_json_whole(json, "pairs", pvs->rows ? enf_pvs_pairs(pvs) : 0);
     enf_json_end_object(json);
     enf_json_bool(json, "leak", build->regions.leak);
     if (build->regions.leak) {

@@ -239,7 +239,7 @@ static void bad_options_are_refused_with_the_usage_line(void **state) {
         {"compile box.obj -o out.enf --spawn 1,2,nan", "is no point"},
         {"compile box.obj -o out.enf --spawn 1,2,1e999", "is no point"},
         {"compile box.obj -o out.enf --pvs perfect", "--pvs"},
-        {"compile box.obj -o out.enf --pvs all", "choose one of none"},
+        {"compile box.obj -o out.enf --pvs all", "choose one of auto, none"},
         {"compile box.obj -o out.enf --weld -1", "is no number"},
         {"compile box.obj -o out.enf --weld 1m", "is no number"},
         {"compile box.obj -o out.enf --weld 0x1", "is no number"},

@@ -43,7 +43,7 @@ static enf_world *open_build(enf_build *build) {
     pipeline_build(build, &options);
     enf_status status = enf_image_make(&image, build, "{}", &error);
     const enf_visibility_options ladder = {.method = ENF_METHOD_HOURGLASS, .threads = 1};
-    if (!status) status = enf_world_pvs_add(&image, &ladder, &visibility, &error);
+    if (!status) status = enf_world_pvs_add(&image, &ladder, NULL, &visibility, &error);
     if (!status) status = enf_view_save(&image.view, path, &error);
     if (!status) status = enf_world_open_path(&world, path, NULL, &error);
     remove(path);

@@ -31,7 +31,7 @@ static void compile(world *world, const char *path) {
     enf_status status = enf_soup_read(&world->build.soup, path, &error);
     if (!status) status = enf_build_run(&world->build, &options, &error);
     if (!status) status = enf_image_make(&world->image, &world->build, "{}", &error);
-    if (!status) status = enf_world_air_make(&world->air, &world->image.view, &error);
+    if (!status) status = enf_world_air_make(&world->air, &world->image.view, false, &error);
     if (status) fail_msg("%s: %s", path, error.text);
 }
 

@@ -182,7 +182,7 @@ static void the_report_has_every_key(void **state) {
     int length = (int)strcspn(first + 1, "\n");
     sprintf(text, "%s%.*s\nf 1 2 99999\n", world, length, first + 1);
     write_text("keys.obj", text);
-    do_run("compile keys.obj -o keys.enf --report keys.json --threads 1");
+    do_run("compile keys.obj -o keys.enf --pvs none --report keys.json --threads 1");
     char *report = read_text("keys.json");
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (!strstr(report, keys[i])) print_error("the report lacks %s\n", keys[i]);
@@ -336,7 +336,7 @@ static void quiet_says_nothing_and_verbose_says_what_was_done(void **state) {
     assert_string_equal(ran.err, "");
     assert_string_equal(ran.out, "");
     process_free(&ran);
-    ran = run_enfilade(NULL, "compile talk.obj -o talk.enf -v");
+    ran = run_enfilade(NULL, "compile talk.obj -o talk.enf -v --pvs none");
     static const char *const stages[] = {"clean",    "tetrahedralize", "split",      "connect", "colour",
                                          "decimate", "portals",        "visibility", "write"};
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) assert_non_null(strstr(ran.err, stages[i]));
@@ -345,6 +345,27 @@ static void quiet_says_nothing_and_verbose_says_what_was_done(void **state) {
     ran = run_enfilade(NULL, "compile talk.obj -o talk.enf -q --progress always");
     assert_non_null(strstr(ran.err, "split"));
     process_free(&ran);
+}
+
+/// By default worlds of some size have a visible set, and larger ones say that they have none.
+static void visible_sets_are_found_by_default_where_they_are_cheap(void **state) {
+    (void)state;
+    do_run("gen four-rooms -o small.obj");
+    do_run("compile small.obj -o small.enf --report small.json");
+    do_run("compile small.obj -o bare.enf --pvs none --report none.json");
+    char *report = read_text("small.json"), *none = read_text("none.json");
+    assert_non_null(strstr(report, "\"method\": \"hourglass\""));
+    assert_non_null(strstr(none, "\"method\": \"none\""));
+    free(report);
+    free(none);
+    do_run("gen caverns -o large.obj");
+    process ran = run_enfilade(NULL, "compile large.obj -o large.enf -v --report large.json");
+    assert_int_equal(ran.status, 0);
+    assert_non_null(strstr(ran.err, "skipped: it would take long"));
+    process_free(&ran);
+    report = read_text("large.json");
+    assert_non_null(strstr(report, "\"method\": \"none\""));
+    free(report);
 }
 
 static void spawn_points_may_be_given_and_groups_left_out(void **state) {
@@ -457,6 +478,7 @@ int main(void) {
         cmocka_unit_test(an_input_may_come_in_pieces_or_from_a_pipe),
         cmocka_unit_test(a_leak_is_a_warning_with_a_path),
         cmocka_unit_test(quiet_says_nothing_and_verbose_says_what_was_done),
+        cmocka_unit_test(visible_sets_are_found_by_default_where_they_are_cheap),
         cmocka_unit_test(vertices_that_no_polygon_can_use_do_no_harm),
         cmocka_unit_test(worlds_may_be_tiny_or_immense),
         cmocka_unit_test(the_worlds_of_the_thesis_fall_into_their_rooms),

@@ -25,7 +25,7 @@ typedef struct builder {
     enf_walls *walls;
     double (*front)[3], (*back)[3]; ///< scratch: the parts of a wall
     size_t front_capacity, back_capacity;
-    int32_t wall_most;
+    int32_t wall_most, leafs_most;
     enf_air_outcome outcome;
 } builder;
 
@@ -210,15 +210,17 @@ static int32_t divide(builder *builder, const int32_t *part, int32_t count, int 
 
 /// The part as a leaf, or as a node; -1 - leaf or the node's number.
 static int32_t build(builder *builder, const int32_t *part, int32_t count, int depth) {
-    if (count == 0) return -1 - builder->tree->leaf_count++;
-    if (depth < ENF_AIR_DEPTH_MOST) return divide(builder, part, count, depth);
+    if (builder->tree->leaf_count < builder->leafs_most) {
+        if (count == 0) return -1 - builder->tree->leaf_count++;
+        if (depth < ENF_AIR_DEPTH_MOST) return divide(builder, part, count, depth);
+    }
     builder->outcome = ENF_AIR_TOO_DEEP;
     return -1;
 }
 
-enf_air_outcome enf_air_tree_make(enf_air_tree *tree, enf_walls *walls, double size) {
+enf_air_outcome enf_air_tree_make(enf_air_tree *tree, enf_walls *walls, double size, int32_t leafs_most) {
     *tree = (enf_air_tree){.tolerance = size * relative_tolerance};
-    builder builder = {.tree = tree, .walls = walls};
+    builder builder = {.tree = tree, .walls = walls, .leafs_most = leafs_most};
     builder.wall_most = (int32_t)fmin(growth_most * walls->count + 1000, INT32_MAX / 2);
     int32_t count = walls->count, *part = enf_array_new((size_t)count, sizeof *part);
     if (!part) return ENF_AIR_NO_MEMORY;

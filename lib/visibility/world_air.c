@@ -28,16 +28,25 @@ static enf_status partition(enf_world_air *air, const enf_air_tree *tree, const 
 /// end. Beams through leafs take about as many times longer as there are more openings.
 static const double leafs_worth = 4, leafs_most = 8000;
 
-static bool are_worth_it(double leafs, double portals) {
-    return leafs <= portals || (leafs <= leafs_worth * (1 + portals) && leafs <= leafs_most);
+/// So many openings of leafs are worth it.
+static double find_most(double portals) {
+    return fmax(portals, fmin(leafs_worth * (1 + portals), leafs_most));
+}
+
+/// A tree with more leafs has too many openings. (Most leafs are rock, and those that are air have some
+/// each.)
+static int32_t find_leafs_most(double portals) {
+    static const double small = 1000;
+    return (int32_t)(small + find_most(portals));
 }
 
 /// With leafs of some kind, portals of cells are worth looking at where a partition has more openings.
-static enf_status choose(enf_world_air *air, bool is_partitioned, const enf_file_view *view,
-                         enf_error *error) {
+static enf_status choose(enf_world_air *air, bool is_partitioned, bool only_partition,
+                         const enf_file_view *view, enf_error *error) {
     const double portals = air->portals.opening_count, leafs = air->leafs.opening_count;
-    const bool has_partition = is_partitioned && are_worth_it(leafs, portals);
-    air->uses_leafs = view->has_exact;
+    const bool has_partition = is_partitioned && leafs <= find_most(portals);
+    air->uses_leafs = has_partition || (view->has_exact && !only_partition);
+    air->has_partition = has_partition;
     air->uses_portals = !air->uses_leafs || (has_partition && portals <= leafs);
     if (!air->uses_portals) enf_portal_graph_free(&air->portals);
     if (has_partition || !air->uses_leafs) return ENF_OK;
@@ -46,7 +55,8 @@ static enf_status choose(enf_world_air *air, bool is_partitioned, const enf_file
     return enf_air_fine_make(&air->leafs, &air->parts, view, error);
 }
 
-enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, enf_error *error) {
+enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition,
+                              enf_error *error) {
     *air = (enf_world_air){0};
     enf_walls walls = {0};
     enf_air_tree tree = {0};
@@ -55,11 +65,12 @@ enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, enf
     enf_status status = enf_world_graph_make(&air->portals, view, error);
     if (!status && view->has_exact) {
         status = enf_air_walls_make(&walls, view, error);
-        if (!status) outcome = enf_air_tree_make(&tree, &walls, size);
+        if (!status)
+            outcome = enf_air_tree_make(&tree, &walls, size, find_leafs_most(air->portals.opening_count));
         if (outcome == ENF_AIR_NO_MEMORY) status = enf_fail_memory(error, "the partition of the air");
     }
     if (!status && outcome == ENF_AIR_DONE) status = partition(air, &tree, &walls, view, size, error);
-    if (!status) status = choose(air, outcome == ENF_AIR_DONE, view, error);
+    if (!status) status = choose(air, outcome == ENF_AIR_DONE, only_partition, view, error);
     enf_air_tree_free(&tree);
     enf_walls_free(&walls);
     return status;

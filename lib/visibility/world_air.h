@@ -15,13 +15,16 @@
 typedef struct enf_world_air {
     bool uses_portals, uses_leafs; ///< at least one; what is left out costs more than it could tell, or is
                                    ///< not in the file
+    bool has_partition;            ///< the leafs are those of a partition, not the fine cells
     enf_portal_graph portals;      ///< between the world's cells; empty if it is not used
     enf_portal_graph leafs;        ///< likewise
     enf_air_parts parts;           ///< of the world's cells, in the leafs
 } enf_world_air;
 
-/// Needs the exact part of the file for a partition. *air is overwritten; free it in any case.
-enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, enf_error *error);
+/// Needs the exact part of the file for leafs. `only_partition`: fine cells are not taken for leafs. *air is
+/// overwritten; free it in any case.
+enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition,
+                              enf_error *error);
 void enf_world_air_free(enf_world_air *air);
 
 #endif

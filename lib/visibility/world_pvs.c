@@ -52,13 +52,18 @@ static enf_status add_rows(enf_image *image, const enf_visibility *visibility, e
     return ENF_OK;
 }
 
-enf_status enf_world_pvs_add(enf_image *image, const enf_visibility_options *options,
+enf_status enf_world_pvs_add(enf_image *image, const enf_visibility_options *options, bool *left_out,
                              enf_visibility *visibility, enf_error *error) {
-    enf_world_air air;
+    enf_world_air air = {0};
     *visibility = (enf_visibility){0};
-    enf_status status = enf_world_air_make(&air, &image->view, error);
-    if (!status) status = enf_world_visibility_run(visibility, &air, &image->view, options, error);
-    if (!status) status = add_rows(image, visibility, error);
+    bool is_large = left_out && image->view.portal_count / 2 > ENF_WORLD_PVS_OPENINGS;
+    enf_status status = is_large ? ENF_OK : enf_world_air_make(&air, &image->view, left_out != NULL, error);
+    is_large = is_large || (left_out && !air.has_partition);
+    if (left_out) *left_out = is_large;
+    if (!status && !is_large) {
+        status = enf_world_visibility_run(visibility, &air, &image->view, options, error);
+        if (!status) status = add_rows(image, visibility, error);
+    }
     enf_world_air_free(&air);
     return status;
 }
