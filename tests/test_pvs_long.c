@@ -95,11 +95,12 @@ static bool run_and_stop(const char *line, double seconds, int signal_number) {
     return true;
 }
 
-/// A run that nobody disturbs, and how long it takes.
-static double run_undisturbed(const char *input) {
+/// A run that nobody disturbs, and how long it takes. Worlds have no witnesses.
+static double run_undisturbed(const char *input, bool is_world) {
     char line[512];
     double started = enf_timer_now();
-    snprintf(line, sizeof line, "pvs %s -o whole.txt --witness whole.w --threads 2 -q", input);
+    snprintf(line, sizeof line, "pvs %s -o whole.txt %s --threads 2 -q", input,
+             is_world ? "--method hourglass" : "--witness whole.w");
     expect(line, 0, "");
     return enf_timer_now() - started;
 }
@@ -107,16 +108,15 @@ static double run_undisturbed(const char *input) {
 // ---------------------------------------------------------------------------------------------- checkpoints
 
 /// Kills at random moments until one run comes through: what it writes is what an undisturbed one writes.
-static void kill_until_done(const char *input, int rounds) {
-    double whole = run_undisturbed(input);
+static void kill_until_done(const char *input, bool is_world, int rounds) {
+    double whole = run_undisturbed(input, is_world);
     char line[512];
     for (int round = 0; round < rounds; round++) {
         int kills = 0, threads = 1 + round % 3;
         unlink("killed.txt");
-        snprintf(
-            line, sizeof line,
-            "pvs %s -o killed.txt --witness killed.w --checkpoint killed.ck --threads %d --progress never",
-            input, threads);
+        snprintf(line, sizeof line,
+                 "pvs %s -o killed.txt %s --checkpoint killed.ck --threads %d --progress never", input,
+                 is_world ? "--method hourglass" : "--witness killed.w", threads);
         for (;; kills++) {
             seed = enf_hash_mix(seed + 1);
             double most = whole * (0.3 + 0.1 * kills); // comes through in the end even if nothing were kept
@@ -124,21 +124,28 @@ static void kill_until_done(const char *input, int rounds) {
             if (file_exists("killed.txt")) assert_same_file("whole.txt", "killed.txt"); // whole or not at all
         }
         assert_same_file("whole.txt", "killed.txt");
-        assert_same_file("whole.w", "killed.w");
+        if (!is_world) assert_same_file("whole.w", "killed.w");
         assert_false(file_exists("killed.ck"));
     }
 }
 
 static void a_killed_run_goes_on_where_it_was(void **state) {
     (void)state;
-    kill_until_done("maze.prt", 4);
+    kill_until_done("maze.prt", false, 4);
+}
+
+static void a_killed_run_of_a_world_goes_on_where_it_was(void **state) {
+    (void)state;
+    expect("gen caverns floors=1 rooms=2 -o world.obj", 0, "");
+    expect("compile world.obj -o world.enf -q", 0, "");
+    kill_until_done("world.enf", true, 3);
 }
 
 static void a_killed_run_of_a_level_goes_on_where_it_was(void **state) {
     (void)state;
 #ifdef ENFILADE_SHARED_DIR
     if (!file_exists(ENFILADE_SHARED_DIR "/quake/prt/dm4.prt")) skip();
-    kill_until_done(ENFILADE_SHARED_DIR "/quake/prt/dm4.prt", 2);
+    kill_until_done(ENFILADE_SHARED_DIR "/quake/prt/dm4.prt", false, 2);
 #else
     print_message("no shared levels here\n");
     skip();
@@ -147,7 +154,7 @@ static void a_killed_run_of_a_level_goes_on_where_it_was(void **state) {
 
 /// Leaves a checkpoint of a run that did not end, with at least so many bytes.
 static void leave_checkpoint(const char *line, const char *path, size_t least) {
-    double whole = run_undisturbed("maze.prt");
+    double whole = run_undisturbed("maze.prt", false);
     for (double part = 0.4;; part = part < 0.9 ? part + 0.05 : 0.4) {
         size_t size = 0;
         if (run_and_stop(line, whole * part, SIGKILL)) free(read_file(path, &size));
@@ -271,7 +278,7 @@ static void the_path_and_the_threads_do_not_matter(void **state) {
 
 static void an_interrupted_run_keeps_its_checkpoint(void **state) {
     (void)state;
-    double whole = run_undisturbed("maze.prt");
+    double whole = run_undisturbed("maze.prt", false);
     bool stopped = false;
     for (int tries = 0; !stopped; tries++) { // too early or too late, once in a while
         unlink("kept.ck");
@@ -360,7 +367,7 @@ static void a_budget_never_hides_what_is_seen_in_a_level(void **state) {
 /// Many small budgets come to what one run without any comes to.
 static void a_budget_can_be_gone_on_from(void **state) {
     (void)state;
-    run_undisturbed("maze.prt");
+    run_undisturbed("maze.prt", false);
     unlink("kept.ck");
     int runs = 0;
     for (bool late = true; late; runs++) {
@@ -384,6 +391,7 @@ static void a_budget_can_be_gone_on_from(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_killed_run_goes_on_where_it_was),
+        cmocka_unit_test(a_killed_run_of_a_world_goes_on_where_it_was),
         cmocka_unit_test(a_killed_run_of_a_level_goes_on_where_it_was),
         cmocka_unit_test(a_damaged_checkpoint_costs_only_what_is_damaged),
         cmocka_unit_test(results_with_another_key_are_passed_over),
