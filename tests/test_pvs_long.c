@@ -136,7 +136,7 @@ static void a_killed_run_goes_on_where_it_was(void **state) {
 
 static void a_killed_run_of_a_world_goes_on_where_it_was(void **state) {
     (void)state;
-    expect("gen caverns floors=1 rooms=2 -o world.obj", 0, "");
+    expect("gen furnished -o world.obj", 0, "");
     expect("compile world.obj -o world.enf -q", 0, "");
     kill_until_done("world.enf", true, 3);
 }

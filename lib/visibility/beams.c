@@ -2,6 +2,7 @@
 #include "visibility/beams.h"
 
 #include "base/array.h"
+#include "visibility/facing.h"
 #include "visibility/hull.h"
 #include "visibility/separator.h"
 
@@ -50,8 +51,8 @@ struct enf_beams {
     beam *beams;
     kept_window *kept; ///< those of this cast come first
     int32_t kept_count;
-    int32_t *reached, reached_count;
-    waiting *heap; ///< portals that wait
+    int32_t *reached, reached_count, first_count; ///< the first ones are those of the cells of bodies
+    waiting *heap;                                ///< portals that wait
     int32_t heap_count;
     int64_t visits;
     source source;
@@ -246,16 +247,24 @@ static void meet_bodies(enf_beams *beams, int32_t via, bool *ready) {
     }
 }
 
-/// Can lines from the source pass the portal forwards? Some of a body must lie behind it (between portals,
-/// `facing` says so).
-static bool is_passable(const enf_beams *beams, int32_t portal) {
+/// Does some of the body that beams come from lie behind the portal?
+static bool is_in_front(const enf_beams *beams, int32_t portal) {
     const enf_outline *corners = &beams->source.body.corners;
-    if (beams->source.portal >= 0) return true;
     for (int32_t i = 0; i < corners->count; i++) {
         double corner[3];
         enf_outline_corner(corners, i, corner);
         if (enf_shape_height(beams->shapes, portal, corner) < beams->shapes->tolerance) return true;
     }
+    return false;
+}
+
+/// Can lines from the source pass the portal forwards? From a body they have passed one of the first portals.
+/// (Between portals, `facing` says so.)
+static bool is_passable(const enf_beams *beams, int32_t portal) {
+    if (beams->source.portal >= 0) return true;
+    if (!is_in_front(beams, portal)) return false;
+    for (int32_t i = 0; i < beams->first_count; i++)
+        if (enf_portals_face(beams->shapes, beams->reached[i], portal)) return true;
     return false;
 }
 
@@ -328,6 +337,7 @@ static void begin_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owne
     memset(beams->open, -1, beams->open_words * sizeof *beams->open);
     for (int32_t k = first[0]; k < first[1]; k++) meet_cell(&beams->source, bodies->cells[k]);
     for (int32_t k = first[0]; k < first[1]; k++) leave(beams, bodies->cells[k]);
+    beams->first_count = beams->reached_count;
 }
 
 void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met) {
