@@ -46,7 +46,9 @@ typedef struct plane {
 
 static side find_side(const builder *builder, int32_t number, const plane *plane) {
     const enf_wall *wall = &builder->walls->walls[number];
+    const double height = enf_dot(wall->middle, plane->normal) - plane->offset;
     int sides = SIDE_ON;
+    if (fabs(height) > wall->radius + builder->tree->tolerance) return height > 0 ? SIDE_FRONT : SIDE_BACK;
     for (int32_t i = 0; i < wall->count && sides != SIDE_BOTH; i++) {
         const double *corner = builder->walls->corners[wall->first + i];
         sides |= (int)side_of(enf_dot(corner, plane->normal) - plane->offset, builder->tree->tolerance);
@@ -62,6 +64,17 @@ static census count_sides(const builder *builder, const int32_t *part, int32_t c
     census census = {{0}};
     for (int32_t i = 0; i < count; i++) census.counts[find_side(builder, part[i], plane)]++;
     return census;
+}
+
+/// Is the plane one of some walls'?
+static bool is_known(const builder *builder, const plane *plane, const int32_t *walls, int32_t count) {
+    for (int32_t k = 0; k < count; k++) {
+        const enf_wall *wall = &builder->walls->walls[walls[k]];
+        if (wall->offset == plane->offset && wall->normal[0] == plane->normal[0] &&
+            wall->normal[1] == plane->normal[1] && wall->normal[2] == plane->normal[2])
+            return true;
+    }
+    return false;
 }
 
 static double cost_of(const census *census) {
@@ -107,9 +120,12 @@ static bool halve(builder *builder, const int32_t *part, int32_t count, plane *p
 static plane choose(builder *builder, const int32_t *part, int32_t count, int depth, census *census) {
     plane best = plane_of(&builder->walls->walls[part[0]]);
     double least = INFINITY;
-    int32_t tries = count < CANDIDATES ? count : CANDIDATES;
+    int32_t tries = count < CANDIDATES ? count : CANDIDATES, tried[CANDIDATES], tried_count = 0;
     for (int32_t k = 0; k < tries; k++) {
-        plane next = plane_of(&builder->walls->walls[part[(int64_t)k * count / tries]]);
+        const int32_t wall = part[(int64_t)k * count / tries];
+        plane next = plane_of(&builder->walls->walls[wall]);
+        if (is_known(builder, &next, tried, tried_count)) continue;
+        tried[tried_count++] = wall;
         struct census counted = count_sides(builder, part, count, &next);
         double cost = cost_of(&counted);
         if (cost >= least) continue;

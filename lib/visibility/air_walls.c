@@ -12,6 +12,26 @@
 
 enum { COVER_SEALED = -2 };
 
+/// For what rounding takes off a radius, as a part of the size of coordinates.
+static const double rounding = 0x1p-48;
+
+/// A sphere around the mean of the corners.
+static void find_sphere(enf_wall *wall, const double (*corners)[3], int32_t count) {
+    double square = 0, size = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double sum = 0;
+        for (int32_t i = 0; i < count; i++) sum += corners[i][axis];
+        wall->middle[axis] = sum / count;
+        size += fabs(wall->middle[axis]);
+    }
+    for (int32_t i = 0; i < count; i++) {
+        double way[3];
+        for (int axis = 0; axis < 3; axis++) way[axis] = corners[i][axis] - wall->middle[axis];
+        square = fmax(square, enf_dot(way, way));
+    }
+    wall->radius = sqrt(square) + rounding * (size + sqrt(square));
+}
+
 bool enf_walls_add(enf_walls *walls, const enf_wall *like, const double (*corners)[3], int32_t count) {
     if (!enf_array_reserve(walls->walls, walls->wall_capacity, walls->count + 1) ||
         !enf_array_reserve(walls->corners, walls->corner_capacity, walls->corner_count + count))
@@ -21,6 +41,7 @@ bool enf_walls_add(enf_walls *walls, const enf_wall *like, const double (*corner
     wall->first = walls->corner_count;
     wall->count = count;
     memcpy(walls->corners + wall->first, corners, (size_t)count * sizeof *corners);
+    find_sphere(wall, corners, count);
     walls->corner_count += count;
     return true;
 }

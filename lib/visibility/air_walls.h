@@ -9,6 +9,7 @@
 typedef struct enf_wall {
     double normal[3], offset; ///< world units; the normal has length 1
     int32_t first, count;     ///< of its corners
+    double middle[3], radius; ///< a sphere that holds them
     bool has_air_behind;      ///< on both sides: it is all that parts the air there
 } enf_wall;
 
@@ -24,7 +25,7 @@ typedef struct enf_walls {
 /// it in any case.
 enf_status enf_air_walls_make(enf_walls *walls, const enf_file_view *view, enf_error *error);
 
-/// Adds a wall; the corners are copied. False without memory.
+/// Adds a wall; the corners are copied, and held by a sphere. False without memory.
 bool enf_walls_add(enf_walls *walls, const enf_wall *like, const double (*corners)[3], int32_t count);
 
 void enf_walls_free(enf_walls *walls);

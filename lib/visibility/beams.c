@@ -52,6 +52,7 @@ struct enf_beams {
     kept_window *kept; ///< those of this cast come first
     int32_t kept_count;
     int32_t *reached, reached_count, first_count; ///< the first ones are those of the cells of bodies
+    int32_t facing_first;                         ///< one of the first
     waiting *heap;                                ///< portals that wait
     int32_t heap_count;
     int64_t visits;
@@ -260,11 +261,13 @@ static bool is_in_front(const enf_beams *beams, int32_t portal) {
 
 /// Can lines from the source pass the portal forwards? From a body they have passed one of the first portals.
 /// (Between portals, `facing` says so.)
-static bool is_passable(const enf_beams *beams, int32_t portal) {
+static bool is_passable(enf_beams *beams, int32_t portal) {
     if (beams->source.portal >= 0) return true;
     if (!is_in_front(beams, portal)) return false;
-    for (int32_t i = 0; i < beams->first_count; i++)
-        if (enf_portals_face(beams->shapes, beams->reached[i], portal)) return true;
+    for (int32_t i = 0; i < beams->first_count; i++) { // most are faced by the one that faced the last
+        if (enf_portals_face(beams->shapes, beams->reached[beams->facing_first], portal)) return true;
+        beams->facing_first = beams->facing_first + 1 < beams->first_count ? beams->facing_first + 1 : 0;
+    }
     return false;
 }
 
@@ -338,6 +341,7 @@ static void begin_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owne
     for (int32_t k = first[0]; k < first[1]; k++) meet_cell(&beams->source, bodies->cells[k]);
     for (int32_t k = first[0]; k < first[1]; k++) leave(beams, bodies->cells[k]);
     beams->first_count = beams->reached_count;
+    beams->facing_first = 0;
 }
 
 void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met) {

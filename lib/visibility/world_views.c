@@ -93,6 +93,7 @@ static void aim(viewer *viewer, const enf_separators *cone, const enf_window *wi
     }
 }
 
+// NOLINTNEXTLINE(misc-no-recursion): from leaf to leaf, DEPTH_MOST at most
 static void look(viewer *viewer, int32_t via, const enf_window *window, int depth) {
     const enf_portal_graph *leafs = viewer->leafs;
     const enf_bodies *bodies = viewer->bodies;
