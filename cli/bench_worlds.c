@@ -44,6 +44,9 @@ static int64_t count_pairs(const enf_pvs *pvs) {
     return (enf_pvs_pairs(pvs) - pvs->cell_count) / 2;
 }
 
+/// When a round finds no more than this of what is seen, no more are thrown.
+static const double saturated = 2e-4;
+
 /// Throws lines at what has not been seen yet, round after round; most of them from views.
 static enf_status throw_lines(const request *request, const enf_file_view *view, const enf_pvs *claimed,
                               row *row, enf_error *error) {
@@ -54,14 +57,15 @@ static enf_status throw_lines(const request *request, const enf_file_view *view,
     if (!status) status = enf_world_lines_make(&lines, view, 1, error);
     for (int32_t i = 0; !status && i < view->portal_count; i++) // neighbours count as seen
         enf_pvs_set(&lines.seen, view->portals[i].from, view->portals[i].to);
-    for (int64_t thrown = -1; !status && lines.count > thrown && lines.count < most;) {
-        int64_t before = count_pairs(&lines.seen);
+    for (bool goes_on = true; !status && goes_on && lines.count < most;) {
+        const int64_t before = count_pairs(&lines.seen), thrown = lines.count;
         bool good = true;
-        thrown = lines.count;
         enf_world_lines_aim(&lines, claimed, TRIES, most);
         enf_world_views_aim(&lines, &air, claimed, VIEWS, most, &good);
         if (!good) status = enf_fail_memory(error, "the views");
-        if (lines.count > thrown) row->last = count_pairs(&lines.seen) - before;
+        const int64_t now = count_pairs(&lines.seen);
+        if (lines.count > thrown) row->last = now - before;
+        goes_on = (double)(now - before) > saturated * (double)now;
     }
     if (!status) {
         row->lines = lines.count;
