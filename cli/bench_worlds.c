@@ -195,8 +195,9 @@ int cli_bench_worlds(int argc, char **argv) {
             "lines\n"
             "have seen, and that were seen but not claimed (missed); excess: claimed, but not seen. Lines "
             "are\n"
-            "thrown at pairs not yet seen, eight a pair and round; last: what the last round still found,\n"
-            "in shares of all that was seen.",
+            "thrown at pairs not yet seen, at random and from random points through what a view from there\n"
+            "leaves open, round after round; last: what the last round still found, in shares of all that\n"
+            "was seen.",
         .options = options,
         .operands_min = 0,
         .operands_max = 1,
