@@ -193,6 +193,53 @@ static void check_pairs(opened *o, int count) {
     assert_true(counts[0] > count / 100 && counts[1] > count / 100);
 }
 
+/// Opens, shuts or sets ajar a random door, or gives a portal a transform, or takes it away.
+static void change_portal(const opened *o, enf_instance *instance, uint64_t *seed) {
+    static const double half_turn[12] = {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0};
+    int32_t portal = (int32_t)(next_random(seed) % (uint64_t)o->view->portal_count);
+    uint64_t kind = next_random(seed) % 8;
+    enf_door door = {.state = kind == 0 ? ENF_DOOR_CLOSED : kind == 1 ? ENF_DOOR_PARTLY : ENF_DOOR_OPEN};
+    for (int a = 0; a < 3 && kind == 1; a++) {
+        door.plane[a] = next_unit(seed) - 0.5;
+        door.plane[3] -= door.plane[a] * o->view->portals[portal].centre[a];
+    }
+    enf_status status = kind < 6 ? enf_instance_set_door(instance, portal, &door, NULL)
+                                 : enf_instance_set_transform(instance, portal, o->view->portals[portal].to,
+                                                              kind == 6 ? half_turn : NULL, NULL);
+    assert_int_equal(status, ENF_OK);
+}
+
+/// What the doors on a line mean is found by looking at those that were changed alone, or at all portals on
+/// the line, in their order: the same.
+static void check_changes(const opened *o, int count) {
+    uint64_t seed = 23;
+    int stopped = 0, free = 0;
+    enf_instance *instance;
+    assert_int_equal(enf_instance_create(&instance, o->world, NULL, NULL), ENF_OK);
+    for (int n = 0; n < count; n++) {
+        double from[3], to[3];
+        int32_t portals[1];
+        enf_sight_query query = {.size = sizeof query};
+        enf_sight quick, whole;
+        change_portal(o, instance, &seed);
+        choose_pair(o, &seed, n, from, to);
+        to_world(o->view, from, query.from);
+        to_world(o->view, to, query.to);
+        assert_int_equal(enf_sight_between(o->world, instance, &query, &quick, NULL), ENF_OK);
+        query.portals = portals;
+        query.portal_capacity = 1;
+        assert_int_equal(enf_sight_between(o->world, instance, &query, &whole, NULL), ENF_OK);
+        if (quick.is_free != whole.is_free || quick.portal != whole.portal)
+            fail_msg("pair %d: %d by portal %d, but %d by portal %d", n, quick.is_free, (int)quick.portal,
+                     whole.is_free, (int)whole.portal);
+        stopped += quick.portal >= 0;
+        free += quick.is_free;
+    }
+    print_message("%d stopped by doors, %d free\n", stopped, free);
+    if (o->view->portal_count > 0) assert_true(stopped > 0 && free > 0);
+    enf_instance_free(instance);
+}
+
 static void check_places(const opened *o, int count) {
     uint64_t seed = 22;
     const enf_file_frame *frame = o->view->frame;
@@ -222,6 +269,7 @@ static void models_are_seen_as_they_are_drawn(void **state) {
         pipeline_read_model(&build.soup, models[i]);
         opened o = open_world(&build);
         check_pairs(&o, 3000);
+        check_changes(&o, 3000);
         check_places(&o, 3000);
         close_world(&o, &build);
     }
@@ -236,6 +284,7 @@ static void a_level_is_seen_as_it_is_drawn(void **state) {
     if (enf_soup_read(&build.soup, path, &error)) fail_msg("%s", error.text);
     opened o = open_world(&build);
     check_pairs(&o, 4000);
+    check_changes(&o, 6000);
     check_places(&o, 3000);
     close_world(&o, &build);
 }

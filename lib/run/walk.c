@@ -51,6 +51,7 @@ static inline unsigned bits_of(four_numbers mask) {
 void enf_walk_begin(enf_walk *walk, const enf_file_view *view, const enf_segment *segment,
                     const enf_file_barrier_node *nodes, int32_t node_count) {
     walk->nodes = nodes;
+    walk->below = NULL;
     walk->most = 1;
     walk->count = node_count > 0;
     walk->waiting[0] = (enf_walk_waiting){0, 0};
@@ -100,6 +101,12 @@ static inline int open_node(const enf_walk *walk, const enf_file_barrier_node *n
     return (int)(UINT64_C(0x4332322132212110) >> (4 * bits_of(met)) & 15);
 }
 
+/// Is a child a node that is of interest?
+static inline bool is_wanted(const enf_walk *walk, int32_t child) {
+    return child >= 0 &&
+           (!walk->below || atomic_load_explicit(&walk->below[child], memory_order_relaxed) != 0);
+}
+
 int32_t enf_walk_next(enf_walk *walk) {
     const enf_file_barrier_node *nodes = walk->nodes;
     enf_walk_waiting *waiting = walk->waiting;
@@ -116,7 +123,8 @@ int32_t enf_walk_next(enf_walk *walk) {
             found = -2 - top.child;
             continue;
         }
-        if (count > 0 && waiting[count - 1].child >= 0) {
+        if (!is_wanted(walk, top.child)) continue;
+        if (count > 0 && is_wanted(walk, waiting[count - 1].child)) {
             int32_t other = waiting[--count].child;
             count += open_node(walk, &nodes[other], &waiting[count]);
         }

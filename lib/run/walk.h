@@ -6,6 +6,7 @@
 
 #include "run/segment.h"
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 /// Every level leaves at most eight children waiting: two nodes are opened at a time, and the deeper ones are
@@ -20,6 +21,7 @@ typedef struct enf_walk_waiting {
 
 typedef struct enf_walk {
     const enf_file_barrier_node *nodes;
+    const _Atomic int32_t *below; ///< per node: 0 if it is of no interest; null: all are
     float origin[3], inverse[3];
     int backward[3]; ///< 1: the segment goes to smaller coordinates
     float most;      ///< only boxes that begin before this share of the segment; may be lowered on the way
