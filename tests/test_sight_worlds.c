@@ -8,6 +8,7 @@
 #include "build/write.h"
 #include "enfilade/sight.h"
 #include "format/frame.h"
+#include "format/locate_point.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -240,23 +241,53 @@ static void check_changes(const opened *o, int count) {
     enf_instance_free(instance);
 }
 
+/// The fine cell by looking at every box that holds the point; -1: none.
+static int32_t find_place(const enf_file_view *view, const double world[3]) {
+    enf_locating point = {.view = view, .best = -1, .best_tetrahedron = -1};
+    to_fine(view, world, point.at);
+    enf_locating_search(&point);
+    if (point.best < 0) enf_locating_search_nearest(&point);
+    return point.best;
+}
+
+/// Anywhere, also a little outside of the world's box; or at a corner, on an edge or on a face of a triangle,
+/// a few steps of the fine grid beside it, or beside it by no more than rounding explains.
+static void choose_place(const opened *o, uint64_t *seed, int n, double world[3]) {
+    const enf_file_frame *frame = o->view->frame;
+    const enf_file_triangle *triangle =
+        &o->view->triangles[next_random(seed) % (uint64_t)o->view->triangle_count];
+    double share[2] = {n % 4 > 1 ? next_unit(seed) / 2 : 0, n % 4 > 2 ? next_unit(seed) / 2 : 0}, fine[3];
+    double beside = n / 4 % 4 ? pow(8, n / 4 % 4) : 0;
+    for (int a = 0; a < 3; a++) {
+        double p = o->points[triangle->point[0]][a], q = o->points[triangle->point[1]][a],
+               r = o->points[triangle->point[2]][a];
+        fine[a] = nearbyint(p + share[0] * (q - p) + share[1] * (r - p) + beside * (next_unit(seed) - 0.5));
+    }
+    to_world(o->view, fine, world);
+    for (int a = 0; a < 3 && n % 4 == 0; a++)
+        world[a] =
+            frame->box_min[a] + (1.2 * next_unit(seed) - 0.1) * (frame->box_max[a] - frame->box_min[a]);
+}
+
+/// A walk from wherever it begins finds what a search through all tetrahedra does.
 static void check_places(const opened *o, int count) {
     uint64_t seed = 22;
-    const enf_file_frame *frame = o->view->frame;
+    int outside = 0;
     for (int n = 0; n < count; n++) {
         double point[3];
-        for (int a = 0; a < 3; a++)
-            point[a] =
-                frame->box_min[a] + (1.2 * next_unit(&seed) - 0.1) * (frame->box_max[a] - frame->box_min[a]);
-        if (n % 3 == 0) // a corner, an edge or a face
-            memcpy(point, o->view->render_points[next_random(&seed) % (uint64_t)o->view->render_point_count],
-                   sizeof point);
-        int32_t hint = (int32_t)(next_random(&seed) % (uint64_t)o->view->tetrahedron_count);
+        choose_place(o, &seed, n, point);
+        int32_t hint = (int32_t)(next_random(&seed) % (uint64_t)o->view->tetrahedron_count),
+                fine = find_place(o->view, point);
         enf_place place = enf_world_locate(o->world, point, -1),
                   hinted = enf_world_locate(o->world, point, hint);
-        assert_int_equal(place.fine_cell, hinted.fine_cell);
+        if (place.fine_cell != fine || hinted.fine_cell != fine)
+            fail_msg("place %d, %.17g %.17g %.17g: %d, from tetrahedron %d %d, but searched %d", n, point[0],
+                     point[1], point[2], (int)place.fine_cell, (int)hint, (int)hinted.fine_cell, (int)fine);
         assert_int_equal(place.cell, hinted.cell);
+        outside += fine < 0;
     }
+    print_message("%d of %d places outside\n", outside, count);
+    assert_true(outside > 0 && outside < count);
 }
 
 static void models_are_seen_as_they_are_drawn(void **state) {
@@ -270,9 +301,19 @@ static void models_are_seen_as_they_are_drawn(void **state) {
         opened o = open_world(&build);
         check_pairs(&o, 3000);
         check_changes(&o, 3000);
-        check_places(&o, 3000);
+        check_places(&o, 20000);
         close_world(&o, &build);
     }
+}
+
+static void places_in_a_turned_world(void **state) {
+    (void)state;
+    const char *const settings[] = {"rotate=10,20,30", "noise=0.01", "seed=3"};
+    enf_build build = {0};
+    pipeline_generate(&build.soup, "furnished", settings, sizeof settings / sizeof *settings);
+    opened o = open_world(&build);
+    check_places(&o, 20000);
+    close_world(&o, &build);
 }
 
 static void a_level_is_seen_as_it_is_drawn(void **state) {
@@ -285,13 +326,14 @@ static void a_level_is_seen_as_it_is_drawn(void **state) {
     opened o = open_world(&build);
     check_pairs(&o, 4000);
     check_changes(&o, 6000);
-    check_places(&o, 3000);
+    check_places(&o, 20000);
     close_world(&o, &build);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(models_are_seen_as_they_are_drawn),
+        cmocka_unit_test(places_in_a_turned_world),
         cmocka_unit_test(a_level_is_seen_as_it_is_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
