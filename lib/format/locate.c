@@ -110,15 +110,11 @@ static void find_fine(enf_locating *point, int32_t hint) {
 }
 
 /// False if it is nowhere near.
-static bool set_point(enf_locating *point, const enf_file_view *view, const double grid[3]) {
-    point->view = view;
-    point->best = point->best_tetrahedron = -1;
-    for (int a = 0; a < 3; a++) {
-        double scaled = grid[a] * view->frame->locate_scale;
-        if (!(fabs(scaled) <= ENF_FILE_GRID_MAX)) return false;
-        point->at[a] = enf_round(scaled);
-    }
-    return true;
+static inline bool set_point(enf_locating *point, const enf_file_view *view, const double grid[3]) {
+    const double scale = view->frame->locate_scale, x = grid[0] * scale, y = grid[1] * scale,
+                 z = grid[2] * scale;
+    *point = (enf_locating){view, {enf_round(x), enf_round(y), enf_round(z)}, -1, -1};
+    return fabs(x) <= ENF_FILE_GRID_MAX && fabs(y) <= ENF_FILE_GRID_MAX && fabs(z) <= ENF_FILE_GRID_MAX;
 }
 
 enf_place enf_view_locate(const enf_file_view *view, const double point[3], int32_t hint) {

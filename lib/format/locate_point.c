@@ -34,10 +34,13 @@ static int side_of(const enf_locating *point, const int32_t through[3], double v
 }
 
 /// The volumes that the faces span with the point, negative inside. Rounded.
-static void find_volumes(const enf_locating *point, int32_t tetrahedron, double volume[4]) {
+static inline void find_volumes(const enf_locating *point, int32_t tetrahedron, double volume[4]) {
     const int32_t *corners = point->view->tetrahedra[tetrahedron];
     double at[4][3], one[3], other[3];
-    for (int k = 0; k < 4; k++) enf_locating_relative(point, corners[k], at[k]);
+    enf_locating_relative(point, corners[0], at[0]);
+    enf_locating_relative(point, corners[1], at[1]);
+    enf_locating_relative(point, corners[2], at[2]);
+    enf_locating_relative(point, corners[3], at[3]);
     enf_locating_cross(at[2], at[3], one);
     enf_locating_cross(at[0], at[1], other);
     volume[0] = -enf_locating_dot(at[1], one);
@@ -93,24 +96,32 @@ int enf_locating_faces(const enf_locating *point, int32_t tetrahedron) {
     return faces;
 }
 
-static int plane_side(const enf_locating *point, int32_t plane) {
-    const int32_t *through = point->view->planes[plane];
-    double a[3], b[3], c[3], across[3];
-    if (through[2] >= 0) {
-        enf_locating_relative(point, through[0], a);
-        enf_locating_relative(point, through[1], b);
-        enf_locating_relative(point, through[2], c);
-        enf_locating_cross(b, c, across);
-        return side_of(point, through, enf_locating_dot(a, across));
-    }
+/// Of a plane through two points and parallel to an axis.
+static int axis_plane_side(const enf_locating *point, const int32_t through[3]) {
+    const int axis = -1 - through[2];
+    double a[3], b[3], c[3];
     // One step of the finer grid along the axis, or against it at the very edge of the range.
-    int axis = -1 - through[2];
     load_point(point, through[0], a);
     load_point(point, through[1], b);
     for (int i = 0; i < 3; i++) c[i] = a[i];
     double step = a[axis] < 0 ? 1 : -1;
     c[axis] += step;
     return enf_points_orient(a, b, c, point->at) * (int)step;
+}
+
+static int plane_side(const enf_locating *point, const int32_t through[3], double volume) {
+    return through[2] < 0 ? axis_plane_side(point, through) : side_of(point, through, volume);
+}
+
+/// The volume that a plane's points span with the point, if there are three of them.
+static inline double plane_volume(const enf_locating *point, const int32_t through[3]) {
+    double a[3], b[3], c[3], across[3];
+    if (through[2] < 0) return 0;
+    enf_locating_relative(point, through[0], a);
+    enf_locating_relative(point, through[1], b);
+    enf_locating_relative(point, through[2], c);
+    enf_locating_cross(b, c, across);
+    return enf_locating_dot(a, across);
 }
 
 /// Cells before discarded space, then the lower number; then the lower tetrahedron.
@@ -136,9 +147,17 @@ void enf_locating_descend(enf_locating *point, int32_t tetrahedron) {
     while (count > 0) {
         int32_t node = waiting[--count];
         while (node >= 0) {
-            int side = plane_side(point, view->node_plane[node]);
-            if (side == 0 && count < BRANCHES_MAX) waiting[count++] = view->node_child[node][0];
-            node = view->node_child[node][side >= 0];
+            const int32_t *child = view->node_child[node], *through = view->planes[view->node_plane[node]];
+            const double volume = plane_volume(point, through);
+            if (volume < -SURE) { // branches: what is guessed need not be waited for
+                node = child[1];
+            } else if (volume > SURE) {
+                node = child[0];
+            } else {
+                int side = plane_side(point, through, volume);
+                if (side == 0 && count < BRANCHES_MAX) waiting[count++] = child[0];
+                node = child[side >= 0];
+            }
         }
         consider(point, tetrahedron, -1 - node);
     }

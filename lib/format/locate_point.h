@@ -18,7 +18,9 @@ extern const int enf_face_corner[4][3];
 /// A point of the world as seen from the one that is being located, on the finer grid.
 static inline void enf_locating_relative(const enf_locating *point, int32_t other, double out[3]) {
     const double *from = point->view->points[other], scale = point->view->frame->locate_scale;
-    for (int a = 0; a < 3; a++) out[a] = from[a] * scale - point->at[a];
+    out[0] = from[0] * scale - point->at[0];
+    out[1] = from[1] * scale - point->at[1];
+    out[2] = from[2] * scale - point->at[2];
 }
 
 static inline double enf_locating_dot(const double a[3], const double b[3]) {
