@@ -15,6 +15,7 @@
 #include "format/round.h"
 
 #include <math.h>
+#include <string.h>
 
 #define WALK_STEPS_MAX 256
 #define HINT_STEPS_MAX 8   // where bricks have another start
@@ -71,18 +72,25 @@ static stop walk(const enf_locating *point, int32_t from, int steps) {
     return at;
 }
 
-/// A tetrahedron not far from the point; -1: unknown.
+/// A tetrahedron not far from the point; -1: unknown. Earlier compilers left bricks outside of the hull
+/// empty: then one on the way to the middle.
 static int32_t find_start(const enf_locating *point) {
     const enf_file_view *view = point->view;
     const enf_file_start *start = view->start;
     if (!start) return -1;
-    int64_t brick = 0;
+    int32_t brick[3], middle[3];
     for (int a = 0; a < 3; a++) {
         double along = (point->at[a] / view->frame->locate_scale - start->origin[a]) * start->per_step[a];
         int32_t last = start->count[a] - 1;
-        brick = brick * start->count[a] + (!(along > 0) ? 0 : along < last ? (int32_t)along : last);
+        brick[a] = !(along > 0) ? 0 : along < last ? (int32_t)along : last;
+        middle[a] = last / 2;
     }
-    return view->start_tetrahedra[brick];
+    for (;;) {
+        int64_t row = (int64_t)brick[0] * start->count[1] + brick[1];
+        int32_t found = view->start_tetrahedra[row * start->count[2] + brick[2]];
+        if (found >= 0 || memcmp(brick, middle, sizeof brick) == 0) return found;
+        for (int a = 0; a < 3; a++) brick[a] = middle[a] + (brick[a] - middle[a]) / 2;
+    }
 }
 
 /// A walk from the hint; if that is not enough, from a brick.
