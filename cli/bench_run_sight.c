@@ -27,7 +27,8 @@ typedef struct line {
 typedef struct bench {
     const enf_world *world;
     const enf_file_view *view;
-    enf_instance *doors; ///< an eighth of its doors were touched
+    enf_instance *doors; ///< an eighth of them were shut and are open again
+    enf_instance *ajar;  ///< an eighth of them are partly open, so far that they let everything through
     uint64_t seed;
     line lines[CLASSES][LINES];
     int count[CLASSES];
@@ -76,7 +77,7 @@ static void choose_line(bench *b) {
     if (b->count[class] < LINES) b->lines[class][b->count[class]++] = line;
 }
 
-typedef enum question { PLAIN, LOCATED, PORTALS_TOO, DOORS, RAY, QUESTIONS } question;
+typedef enum question { PLAIN, LOCATED, PORTALS_TOO, DOORS, AJAR, RAY, QUESTIONS } question;
 
 static void ask(const bench *b, const line *line, question question) {
     enf_sight_query query = line->query;
@@ -100,7 +101,8 @@ static void ask(const bench *b, const line *line, question question) {
         query.portals = portals;
         query.portal_capacity = PORTALS;
     }
-    enf_sight_between(b->world, question == DOORS ? b->doors : NULL, &query, &sight, NULL);
+    const enf_instance *doors = question == DOORS ? b->doors : question == AJAR ? b->ajar : NULL;
+    enf_sight_between(b->world, doors, &query, &sight, NULL);
 }
 
 /// Nanoseconds a question.
@@ -131,25 +133,31 @@ static enf_status measure_world(const cli_bench_subject *subject, void *user, en
     bench *b = calloc(1, sizeof *b);
     if (!b) return enf_fail_memory(error, "a table");
     enf_status status = enf_instance_create(&b->doors, subject->world, NULL, error);
+    if (!status) status = enf_instance_create(&b->ajar, subject->world, NULL, error);
     if (!status) {
         b->world = subject->world;
         b->view = enf_world_file(subject->world);
         b->seed = 1;
-        enf_door open = {.state = ENF_DOOR_OPEN};
-        for (int32_t i = 0; i < b->view->portal_count; i += 16)
+        enf_door open = {.state = ENF_DOOR_OPEN}, shut = {.state = ENF_DOOR_CLOSED},
+                 ajar = {ENF_DOOR_PARTLY, {1, 0, 0, 0x1p100}};
+        for (int32_t i = 0; i < b->view->portal_count; i += 16) {
+            enf_instance_set_door(b->doors, i, &shut, NULL);
             enf_instance_set_door(b->doors, i, &open, NULL);
+            enf_instance_set_door(b->ajar, i, &ajar, NULL);
+        }
         for (int n = 0; n < TRIES && b->view->cell_count > 0; n++) choose_line(b);
         for (int class = 0; class < CLASSES; class ++) print_class(b, subject->name, class);
     }
     enf_instance_free(b->doors);
+    enf_instance_free(b->ajar);
     free(b);
     return status;
 }
 
 static void print_head(void *user) {
     (void)user;
-    printf("%-24s %7s %8s %6s %8s %8s %8s %8s %8s\n", "world", "cells", "portals", "lines", "plain",
-           "located", "listed", "doors", "ray");
+    printf("%-24s %7s %8s %6s %8s %8s %8s %8s %8s %8s\n", "world", "cells", "portals", "lines", "plain",
+           "located", "listed", "doors", "ajar", "ray");
 }
 
 int cli_bench_run_sight(int argc, char **argv) {
@@ -159,8 +167,9 @@ int cli_bench_run_sight(int argc, char **argv) {
         .usage = "WORLD.enf ...",
         .summary =
             "Nanoseconds per line of sight between points whose places are known (plain), with both\n"
-            "to be found (located), with the portals listed, with doors to look at, and per ray without\n"
-            "end, by the portals passed.",
+            "to be found (located), with the portals listed, with an eighth of the portals open again after\n"
+            "having been shut (doors), or open partly but not shutting anything (ajar), and per ray\n"
+            "without end, by the portals passed.",
         .options = options,
         .begin = print_head,
         .measure = measure_world};

@@ -32,8 +32,6 @@ typedef struct view_check {
 enf_status view_check_create(view_check *check, const enf_world *world, uint64_t seed, enf_error *error);
 void view_check_free(view_check *check);
 
-double view_check_share(uint64_t *seed);
-
 /// Looks from `eye` in a random direction, tilted; false if it is in no cell.
 bool view_check_look(view_check *check, const double eye[3], check_camera *camera);
 

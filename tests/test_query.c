@@ -572,6 +572,49 @@ static void hostile_portals_end(void **state) {
 }
 
 #ifdef ENFILADE_CLI
+/// Triangles are found by the tree of walls, where that is loaded, or by looking at all that the cells list:
+/// the same ones in the same order.
+static void check_ways(const run_world *w, uint64_t *seed, int rounds) {
+    const enf_open_options lazily = {.size = sizeof lazily, .mode = ENF_OPEN_LAZY};
+    const enf_file_view *view = enf_world_file(w->world);
+    enf_world *worlds[2] = {w->world};
+    enf_query *queries[2];
+    enf_touched *touched[2];
+    int64_t sum = 0;
+    assert_int_equal(enf_world_open_memory(&worlds[1], w->bytes, w->size, &lazily, NULL), ENF_OK);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(enf_query_create(&queries[i], worlds[i], NULL, NULL), ENF_OK);
+        touched[i] = calloc((size_t)view->triangle_count + 1, sizeof **touched);
+        assert_non_null(touched[i]);
+    }
+    assert_non_null(enf_world_file(worlds[0])->wall_nodes);
+    assert_null(enf_world_file(worlds[1])->wall_nodes);
+    for (int n = 0; n < rounds; n++) {
+        enf_shape shape = random_shape(w, seed);
+        int32_t corner = view->triangles[run_random(seed) % (uint64_t)view->triangle_count].point[n % 3];
+        for (int a = 0; a < 3; a++) {
+            double away = shape.radius + shape.half[a];
+            shape.centre[a] = view->render_points[corner][a] + away * (2 * run_random_share(seed) - 1);
+        }
+        int64_t count[2];
+        for (int i = 0; i < 2; i++) {
+            enf_reach reach;
+            assert_int_equal(enf_query_cells(queries[i], NULL, -1, &shape, NULL, 0, &reach, NULL), ENF_OK);
+            count[i] = enf_query_triangles(queries[i], touched[i], view->triangle_count);
+        }
+        assert_int_equal(count[0], count[1]);
+        for (int64_t k = 0; k < count[0]; k++)
+            assert_int_equal(touched[0][k].triangle, touched[1][k].triangle);
+        sum += count[0];
+    }
+    assert_true(sum > rounds);
+    for (int i = 0; i < 2; i++) {
+        enf_query_free(queries[i]);
+        free(touched[i]);
+    }
+    enf_world_close(worlds[1]);
+}
+
 static void compiled_worlds(void **state) {
     (void)state;
     uint64_t seed = 11;
@@ -582,6 +625,7 @@ static void compiled_worlds(void **state) {
         snprintf(path, sizeof path, ENFILADE_MODELS_DIR "/%s.obj", models[i]);
         run_world w = run_world_compile(path);
         check_world(&w, &seed, 100);
+        check_ways(&w, &seed, 2000);
         run_world_free(&w);
     }
 }
@@ -593,6 +637,7 @@ static void a_level(void **state) {
     snprintf(path, sizeof path, "%s/quake/obj/end.obj.gz", shared_data());
     run_world w = run_world_compile(path);
     check_world(&w, &seed, 60);
+    check_ways(&w, &seed, 2000);
     run_world_free(&w);
 }
 #endif

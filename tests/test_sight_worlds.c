@@ -8,6 +8,7 @@
 #include "build/write.h"
 #include "enfilade/sight.h"
 #include "format/frame.h"
+#include "format/locate_point.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -193,23 +194,100 @@ static void check_pairs(opened *o, int count) {
     assert_true(counts[0] > count / 100 && counts[1] > count / 100);
 }
 
+/// Opens, shuts or sets ajar a random door, or gives a portal a transform, or takes it away.
+static void change_portal(const opened *o, enf_instance *instance, uint64_t *seed) {
+    static const double half_turn[12] = {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0};
+    int32_t portal = (int32_t)(next_random(seed) % (uint64_t)o->view->portal_count);
+    uint64_t kind = next_random(seed) % 8;
+    enf_door door = {.state = kind == 0 ? ENF_DOOR_CLOSED : kind == 1 ? ENF_DOOR_PARTLY : ENF_DOOR_OPEN};
+    for (int a = 0; a < 3 && kind == 1; a++) {
+        door.plane[a] = next_unit(seed) - 0.5;
+        door.plane[3] -= door.plane[a] * o->view->portals[portal].centre[a];
+    }
+    enf_status status = kind < 6 ? enf_instance_set_door(instance, portal, &door, NULL)
+                                 : enf_instance_set_transform(instance, portal, o->view->portals[portal].to,
+                                                              kind == 6 ? half_turn : NULL, NULL);
+    assert_int_equal(status, ENF_OK);
+}
+
+/// What the doors on a line mean is found by looking at those that were changed alone, or at all portals on
+/// the line, in their order: the same.
+static void check_changes(const opened *o, int count) {
+    uint64_t seed = 23;
+    int stopped = 0, free = 0;
+    enf_instance *instance;
+    assert_int_equal(enf_instance_create(&instance, o->world, NULL, NULL), ENF_OK);
+    for (int n = 0; n < count; n++) {
+        double from[3], to[3];
+        int32_t portals[1];
+        enf_sight_query query = {.size = sizeof query};
+        enf_sight quick, whole;
+        change_portal(o, instance, &seed);
+        choose_pair(o, &seed, n, from, to);
+        to_world(o->view, from, query.from);
+        to_world(o->view, to, query.to);
+        assert_int_equal(enf_sight_between(o->world, instance, &query, &quick, NULL), ENF_OK);
+        query.portals = portals;
+        query.portal_capacity = 1;
+        assert_int_equal(enf_sight_between(o->world, instance, &query, &whole, NULL), ENF_OK);
+        if (quick.is_free != whole.is_free || quick.portal != whole.portal)
+            fail_msg("pair %d: %d by portal %d, but %d by portal %d", n, quick.is_free, (int)quick.portal,
+                     whole.is_free, (int)whole.portal);
+        stopped += quick.portal >= 0;
+        free += quick.is_free;
+    }
+    print_message("%d stopped by doors, %d free\n", stopped, free);
+    if (o->view->portal_count > 0) assert_true(stopped > 0 && free > 0);
+    enf_instance_free(instance);
+}
+
+/// The fine cell by looking at every box that holds the point; -1: none.
+static int32_t find_place(const enf_file_view *view, const double world[3]) {
+    enf_locating point = {.view = view, .best = -1, .best_tetrahedron = -1};
+    to_fine(view, world, point.at);
+    enf_locating_search(&point);
+    if (point.best < 0) enf_locating_search_nearest(&point);
+    return point.best;
+}
+
+/// Anywhere, also a little outside of the world's box; or at a corner, on an edge or on a face of a triangle,
+/// a few steps of the fine grid beside it, or beside it by no more than rounding explains.
+static void choose_place(const opened *o, uint64_t *seed, int n, double world[3]) {
+    const enf_file_frame *frame = o->view->frame;
+    const enf_file_triangle *triangle =
+        &o->view->triangles[next_random(seed) % (uint64_t)o->view->triangle_count];
+    double share[2] = {n % 4 > 1 ? next_unit(seed) / 2 : 0, n % 4 > 2 ? next_unit(seed) / 2 : 0}, fine[3];
+    double beside = n / 4 % 4 ? pow(8, n / 4 % 4) : 0;
+    for (int a = 0; a < 3; a++) {
+        double p = o->points[triangle->point[0]][a], q = o->points[triangle->point[1]][a],
+               r = o->points[triangle->point[2]][a];
+        fine[a] = nearbyint(p + share[0] * (q - p) + share[1] * (r - p) + beside * (next_unit(seed) - 0.5));
+    }
+    to_world(o->view, fine, world);
+    for (int a = 0; a < 3 && n % 4 == 0; a++)
+        world[a] =
+            frame->box_min[a] + (1.2 * next_unit(seed) - 0.1) * (frame->box_max[a] - frame->box_min[a]);
+}
+
+/// A walk from wherever it begins finds what a search through all tetrahedra does.
 static void check_places(const opened *o, int count) {
     uint64_t seed = 22;
-    const enf_file_frame *frame = o->view->frame;
+    int outside = 0;
     for (int n = 0; n < count; n++) {
         double point[3];
-        for (int a = 0; a < 3; a++)
-            point[a] =
-                frame->box_min[a] + (1.2 * next_unit(&seed) - 0.1) * (frame->box_max[a] - frame->box_min[a]);
-        if (n % 3 == 0) // a corner, an edge or a face
-            memcpy(point, o->view->render_points[next_random(&seed) % (uint64_t)o->view->render_point_count],
-                   sizeof point);
-        int32_t hint = (int32_t)(next_random(&seed) % (uint64_t)o->view->tetrahedron_count);
+        choose_place(o, &seed, n, point);
+        int32_t hint = (int32_t)(next_random(&seed) % (uint64_t)o->view->tetrahedron_count),
+                fine = find_place(o->view, point);
         enf_place place = enf_world_locate(o->world, point, -1),
                   hinted = enf_world_locate(o->world, point, hint);
-        assert_int_equal(place.fine_cell, hinted.fine_cell);
+        if (place.fine_cell != fine || hinted.fine_cell != fine)
+            fail_msg("place %d, %.17g %.17g %.17g: %d, from tetrahedron %d %d, but searched %d", n, point[0],
+                     point[1], point[2], (int)place.fine_cell, (int)hint, (int)hinted.fine_cell, (int)fine);
         assert_int_equal(place.cell, hinted.cell);
+        outside += fine < 0;
     }
+    print_message("%d of %d places outside\n", outside, count);
+    assert_true(outside > 0 && outside < count);
 }
 
 static void models_are_seen_as_they_are_drawn(void **state) {
@@ -222,9 +300,20 @@ static void models_are_seen_as_they_are_drawn(void **state) {
         pipeline_read_model(&build.soup, models[i]);
         opened o = open_world(&build);
         check_pairs(&o, 3000);
-        check_places(&o, 3000);
+        check_changes(&o, 3000);
+        check_places(&o, 20000);
         close_world(&o, &build);
     }
+}
+
+static void places_in_a_turned_world(void **state) {
+    (void)state;
+    const char *const settings[] = {"rotate=10,20,30", "noise=0.01", "seed=3"};
+    enf_build build = {0};
+    pipeline_generate(&build.soup, "furnished", settings, sizeof settings / sizeof *settings);
+    opened o = open_world(&build);
+    check_places(&o, 20000);
+    close_world(&o, &build);
 }
 
 static void a_level_is_seen_as_it_is_drawn(void **state) {
@@ -236,13 +325,15 @@ static void a_level_is_seen_as_it_is_drawn(void **state) {
     if (enf_soup_read(&build.soup, path, &error)) fail_msg("%s", error.text);
     opened o = open_world(&build);
     check_pairs(&o, 4000);
-    check_places(&o, 3000);
+    check_changes(&o, 6000);
+    check_places(&o, 20000);
     close_world(&o, &build);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(models_are_seen_as_they_are_drawn),
+        cmocka_unit_test(places_in_a_turned_world),
         cmocka_unit_test(a_level_is_seen_as_it_is_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Views of compiled worlds, with their visible sets, against rays that know triangles only: what a ray hits
 // first from its front is in a listed cell, in whose region its pixel is. Eyes are anywhere, or on portals,
-// their edges and corners, and next to them.
+// their edges and corners, and next to them; and on what is drawn.
 #include "pipeline_fixture.h"
 
 #include "build/write.h"
+#include "cli/random.h"
 #include "cli/view_check.h"
 #include "format/save.h"
 #include "visibility/world_pvs.h"
@@ -28,7 +29,48 @@ static const enf_view_options settings[] = {
     {.size = sizeof(enf_view_options), .without = ENF_VIEW_FACING | ENF_VIEW_SPHERE},
 };
 
-enum { SETTINGS = sizeof settings / sizeof *settings };
+enum { SETTINGS = sizeof settings / sizeof *settings, STEPS = 8 };
+
+/// Weights of a triangle's corners: all on one, on an edge, or anywhere.
+static void choose_weights(uint64_t *seed, int kind, double weight[3]) {
+    double s = kind > 0 ? cli_random_share(seed) : 0, t = kind > 1 ? cli_random_share(seed) * (1 - s) : 0;
+    weight[0] = 1 - s - t;
+    weight[1] = s;
+    weight[2] = t;
+}
+
+static void mix(const double *const corner[3], const double weight[3], double point[3]) {
+    for (int a = 0; a < 3; a++)
+        point[a] = weight[0] * corner[0][a] + weight[1] * corner[1][a] + weight[2] * corner[2][a];
+}
+
+static int32_t choose(uint64_t *seed, int32_t count) {
+    return (int32_t)(cli_random_share(seed) * count);
+}
+
+/// A point of a portal: a corner, on an edge or inside.
+static void choose_on_portal(view_check *check, int kind, double point[3]) {
+    const enf_file_view *view = check->view;
+    const enf_file_portal_polygon *polygon =
+        &view->portal_polygons[choose(&check->seed, view->portal_polygon_count)];
+    const double(*v)[3] = view->portal_vertices + polygon->vertex_first;
+    int32_t i = choose(&check->seed, polygon->vertex_count), count = polygon->vertex_count;
+    double weight[3];
+    choose_weights(&check->seed, kind, weight);
+    mix((const double *const[3]){v[i], v[(i + 1) % count], v[(i + 2) % count]}, weight, point);
+}
+
+/// The same of a triangle.
+static void choose_on_wall(view_check *check, int kind, double point[3]) {
+    const enf_file_view *view = check->view;
+    const enf_file_triangle *triangle = &view->triangles[choose(&check->seed, view->triangle_count)];
+    int k = choose(&check->seed, 3);
+    const double *corner[3];
+    double weight[3];
+    for (int i = 0; i < 3; i++) corner[i] = view->render_points[triangle->point[(k + i) % 3]];
+    choose_weights(&check->seed, kind, weight);
+    mix(corner, weight, point);
+}
 
 static enf_world *open_build(enf_build *build) {
     char path[] = "view-XXXXXX";
@@ -54,6 +96,36 @@ static enf_world *open_build(enf_build *build) {
     return world;
 }
 
+/// Looks from an eye. Returns how many rays missed.
+static int64_t check_eye(view_check *check, enf_view *view, const double eye[3], int rays) {
+    check_camera look;
+    if (!view_check_look(check, eye, &look)) return 0;
+    const enf_visible *visible = enf_view_run(view, NULL, &look.camera);
+    assert_int_equal(visible->cell, look.place.cell);
+    return view_check_rays(check, &look, visible, rays);
+}
+
+/// Eyes that go through portals in steps of 1e-6, and one of the steps is exactly on it; and such on corners,
+/// edges and faces of what is drawn.
+static int64_t check_borders(view_check *check, enf_view *const *views, int passages, int rays) {
+    int64_t missed = 0;
+    for (int n = 0; n < passages; n++) {
+        double point[3], eye[3], step[3];
+        enf_view *view = views[n % SETTINGS];
+        choose_on_portal(check, n % 3, point);
+        for (int a = 0; a < 3; a++) step[a] = 1e-6 * (2 * cli_random_share(&check->seed) - 1);
+        for (int k = -STEPS; k <= STEPS; k++) {
+            for (int a = 0; a < 3; a++) eye[a] = point[a] + k * step[a];
+            missed += check_eye(check, view, eye, rays);
+        }
+        for (int k = 0; k < STEPS; k++) {
+            choose_on_wall(check, k % 3, eye);
+            missed += check_eye(check, view, eye, rays);
+        }
+    }
+    return missed;
+}
+
 static void check_world(enf_world *world, const char *name, int cameras, int rays) {
     view_check check;
     enf_view *views[SETTINGS];
@@ -76,6 +148,9 @@ static void check_world(enf_world *world, const char *name, int cameras, int ray
                 for (int a = 0; a < 2; a++) assert_true(fabs(visible->entries[i].vertices[k][a]) < 1.001);
         missed += view_check_rays(&check, &look, visible, rays);
     }
+    int64_t hits = check.hits;
+    missed += check_borders(&check, views, cameras / 10, 20);
+    assert_true(check.hits - hits > 10 * cameras);
     print_message("%s: seed %" PRIu64 ", %" PRId64 " hits, %" PRId64 " missed\n", name, seed, check.hits,
                   missed);
     assert_true(check.hits > 10 * cameras && missed == 0 && check.unlisted == 0 && cut > 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where point location starts when it has no hint: a quarter as many bricks as there are tetrahedra, each
-// with the one that holds its middle.
+// with the one that holds its middle, or one of the hull that has it in front.
 #include "build/write_parts.h"
 
 #include "format/locate.h"
@@ -44,7 +44,7 @@ static void choose_bricks(enf_file_start *start, const enf_file_view *view) {
 
 /// The bricks in an order in which each lies beside the one before it.
 static void fill_bricks(const enf_file_start *start, const enf_file_view *view, int32_t *tetrahedra) {
-    int32_t hint = -1, rows = 0;
+    int32_t hint = view->tetrahedron_count > 0 ? 0 : -1, rows = 0;
     for (int32_t x = 0; x < start->count[0]; x++) {
         for (int32_t j = 0; j < start->count[1]; j++, rows++) {
             int32_t y = x % 2 ? start->count[1] - 1 - j : j;
@@ -53,9 +53,8 @@ static void fill_bricks(const enf_file_start *start, const enf_file_view *view, 
                 const double middle[3] = {start->origin[0] + (x + 0.5) / start->per_step[0],
                                           start->origin[1] + (y + 0.5) / start->per_step[1],
                                           start->origin[2] + (z + 0.5) / start->per_step[2]};
-                enf_place place = enf_view_locate_grid(view, middle, hint);
-                tetrahedra[((int64_t)x * start->count[1] + y) * start->count[2] + z] = place.tetrahedron;
-                if (place.tetrahedron >= 0) hint = place.tetrahedron;
+                hint = enf_view_locate_near(view, middle, hint);
+                tetrahedra[((int64_t)x * start->count[1] + y) * start->count[2] + z] = hint;
             }
         }
     }

@@ -13,9 +13,11 @@ void enf_view_turn(const enf_file_view *view, const double world[3], double turn
 
 void enf_view_to_grid(const enf_file_view *view, const double world[3], double grid[3]) {
     const enf_file_frame *frame = view->frame;
-    double turned[3];
-    enf_view_turn(view, world, turned);
-    for (int a = 0; a < 3; a++) grid[a] = frame->sign[a] * turned[frame->axis[a]] / frame->step;
+    double turned[3] = {world[0], world[1], world[2]};
+    if (view->turn) enf_view_turn(view, world, turned);
+    grid[0] = frame->sign[0] * turned[frame->axis[0]] / frame->step;
+    grid[1] = frame->sign[1] * turned[frame->axis[1]] / frame->step;
+    grid[2] = frame->sign[2] * turned[frame->axis[2]] / frame->step;
 }
 
 void enf_view_direction_to_world(const enf_file_view *view, const double grid[3], double world[3]) {

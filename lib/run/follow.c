@@ -34,7 +34,8 @@ static bool follow_leg(const enf_world *world, enf_way *way, const enf_step *ste
     memcpy(stepped->point, to, sizeof stepped->point);
     stepped->place = place;
     if (near || cell < 0 || !enf_way_set(way, from, to)) return false;
-    if (!wanted && !enf_way_meets_change(way)) return false;
+    int32_t portal;
+    if (!wanted && enf_way_look_ahead(way, &portal) == ENF_WAY_CLEAR) return false;
 
     enf_way_end end = enf_way_pass(way, ENF_WAY_WHOLE, &cell, place.cell, passed);
     if (end.outcome == ENF_WAY_FREE) return false;

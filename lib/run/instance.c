@@ -8,6 +8,7 @@
 
 #include "base/options.h"
 #include "run/affine.h"
+#include "run/changed.h"
 #include "run/open.h"
 #include "run/vector.h"
 #include <math.h>
@@ -34,6 +35,7 @@ struct enf_instance {
     int32_t *moving;        ///< the portals with a transform, ascending
     int32_t moving_count;
     _Atomic int32_t shut; ///< doors closed
+    enf_changed changed;  ///< doors that are not open, and transforms
 };
 
 enf_status enf_instance_create(enf_instance **out, const enf_world *world,
@@ -46,7 +48,8 @@ enf_status enf_instance_create(enf_instance **out, const enf_world *world,
     const enf_file_view *view = enf_world_file(world);
     enf_instance *instance = calloc(1, sizeof *instance);
     door *doors = calloc((size_t)view->portal_count / 2 + 1, sizeof *doors);
-    if (!instance || !doors) {
+    if (!instance || !doors || !enf_changed_make(&instance->changed, view)) {
+        if (instance) enf_changed_free(&instance->changed);
         free(instance);
         free(doors);
         return enf_fail_memory(error, "an instance");
@@ -64,6 +67,7 @@ void enf_instance_free(enf_instance *instance) {
     free(instance->transforms);
     free(instance->moving);
     free(instance->doors);
+    enf_changed_free(&instance->changed);
     free(instance);
 }
 
@@ -85,16 +89,19 @@ enf_status enf_instance_set_door(enf_instance *instance, int32_t portal, const e
         return enf_fail(error, ENF_BAD_USAGE, "a door that is partly open needs a plane with a direction");
     door *door = &instance->doors[portal / 2];
     atomic_store_explicit(&instance->touched, true, memory_order_release);
-    int change = (set->state == ENF_DOOR_CLOSED) -
-                 (atomic_load_explicit(&door->state, memory_order_relaxed) == ENF_DOOR_CLOSED);
-    if (change > 0) atomic_fetch_add_explicit(&instance->shut, 1, memory_order_release);
+    const uint32_t before = atomic_load_explicit(&door->state, memory_order_relaxed);
+    int shuts = (set->state == ENF_DOOR_CLOSED) - (before == ENF_DOOR_CLOSED);
+    int change = (set->state != ENF_DOOR_OPEN) - (before != ENF_DOOR_OPEN);
+    if (shuts > 0) atomic_fetch_add_explicit(&instance->shut, 1, memory_order_release);
+    if (change > 0) enf_changed_add(&instance->changed, portal / 2, change);
     uint32_t version = atomic_load_explicit(&door->version, memory_order_relaxed);
     atomic_store_explicit(&door->version, version + 1, memory_order_relaxed);
     atomic_store_explicit(&door->state, (uint32_t)set->state, memory_order_release);
     for (int i = 0; i < 4; i++)
         atomic_store_explicit(&door->plane[i], partly ? plane[i] : 0, memory_order_release);
     atomic_store_explicit(&door->version, version + 2, memory_order_release);
-    if (change < 0) atomic_fetch_sub_explicit(&instance->shut, 1, memory_order_release);
+    if (shuts < 0) atomic_fetch_sub_explicit(&instance->shut, 1, memory_order_release);
+    if (change < 0) enf_changed_add(&instance->changed, portal / 2, change);
     return ENF_OK;
 }
 
@@ -131,6 +138,13 @@ static void note_transform(enf_instance *instance, int32_t portal, bool used) {
     }
 }
 
+static void set_used(enf_instance *instance, int32_t portal, bool used) {
+    transform *transform = instance->transforms[portal];
+    if (used != transform->used) enf_changed_add(&instance->changed, portal / 2, used ? 1 : -1);
+    transform->used = used;
+    note_transform(instance, portal, used);
+}
+
 /// Memory for a transform of a portal, and for the lists.
 static bool reserve_transform(enf_instance *instance, int32_t portal) {
     size_t count = (size_t)instance->view->portal_count;
@@ -148,8 +162,7 @@ enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, in
     if (status) return status;
     if (!matrix) {
         if (instance->transforms && instance->transforms[portal]) {
-            instance->transforms[portal]->used = false;
-            note_transform(instance, portal, false);
+            set_used(instance, portal, false);
         }
         return ENF_OK;
     }
@@ -162,15 +175,18 @@ enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, in
     if (!reserve_transform(instance, portal)) return enf_fail_memory(error, "a transform");
     transform *place = instance->transforms[portal];
     place->to = to;
-    place->used = true;
     memcpy(place->matrix, matrix, sizeof place->matrix);
-    note_transform(instance, portal, true);
+    set_used(instance, portal, true);
     return ENF_OK;
 }
 
 bool enf_instance_is_changed(const enf_instance *instance) {
     return instance &&
            (instance->transforms || atomic_load_explicit(&instance->touched, memory_order_acquire));
+}
+
+const _Atomic int32_t *enf_instance_changed_below(const enf_instance *instance, int32_t node_count) {
+    return instance->changed.node_count == node_count ? instance->changed.below : NULL;
 }
 
 bool enf_instance_pair_is_changed(const enf_instance *instance, int32_t portal) {

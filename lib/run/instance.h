@@ -22,6 +22,10 @@ bool enf_instance_is_changed(const enf_instance *instance);
 /// The same of one pair of portals; false: it is as it was compiled.
 bool enf_instance_pair_is_changed(const enf_instance *instance, int32_t portal);
 
+/// How many changes there are below each node of the tree of portals, if it has `node_count` nodes. Null:
+/// that is not known.
+const _Atomic int32_t *enf_instance_changed_below(const enf_instance *instance, int32_t node_count);
+
 /// The passage of a portal, but a door that is closed does not hide where the portal leads.
 enf_passage enf_instance_lead(const enf_instance *instance, const enf_file_view *view, int32_t portal,
                               bool *is_shut);

@@ -61,6 +61,7 @@ enf_status enf_query_create(enf_query **out, const enf_world *world, const enf_q
         enf_query_free(query);
         return enf_fail_memory(error, "a query object");
     }
+    if (query->triangle_seen) enf_near_prepare(&query->near_index, view, query->triangle_seen);
     *out = query;
     return ENF_OK;
 }

@@ -4,6 +4,7 @@
 #define ENF_RUN_QUERY_H
 
 #include "enfilade/query.h"
+#include "run/query_near.h"
 
 /// A cell reached, in the order in which the flood found it.
 typedef struct enf_flooded {
@@ -25,6 +26,7 @@ struct enf_query {
     bool complete;
     uint32_t triangle_mark;
     uint32_t *triangle_seen; ///< per triangle; null: skipped
+    enf_near_index near_index;
 };
 
 /// Voids what all cells have.

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { TRIANGLES_MANY = 96 }; ///< of a cell: then those near the shape are found first
+
 /// Voids the marks of all triangles.
 static void begin_triangles(enf_query *query) {
     if (++query->triangle_mark) return;
@@ -32,41 +34,75 @@ static void find_normal(const double corner[3][3], double normal[3]) {
 }
 
 static bool meets_triangle(const enf_query *query, const enf_shape *shape, int32_t number, double slack) {
-    const enf_file_triangle *triangle = &query->view->triangles[number];
+    if (!enf_near_has_box(query->view, shape, number, slack)) return false;
     double corner[3][3];
-    const double *size = shape->half;
     for (int k = 0; k < 3; k++)
-        memcpy(corner[k], query->view->render_points[triangle->point[k]], sizeof corner[k]);
-    for (int a = 0; a < 3; a++) {
-        double low = fmin(corner[0][a], fmin(corner[1][a], corner[2][a])) - shape->centre[a];
-        double high = fmax(corner[0][a], fmax(corner[1][a], corner[2][a])) - shape->centre[a];
-        double most = shape->radius + size[a] + slack;
-        if (low > most || high < -most) return false;
-    }
+        memcpy(corner[k], query->view->render_points[query->view->triangles[number].point[k]],
+               sizeof corner[k]);
     enf_face face = {.vertices = (const double(*)[3])corner, .count = 3};
     find_normal((const double(*)[3])corner, face.normal);
     return enf_shape_meets_face(shape, &face, slack);
 }
 
-int64_t enf_query_triangles(enf_query *query, enf_touched *out, int64_t capacity) {
-    const enf_file_view *view = query->view;
-    int64_t count = 0;
-    for (int32_t image = 0; query->triangle_seen && image < query->image_count; image++) {
-        const enf_shape *shape = &query->images[image].shape;
-        double slack = enf_query_slack(query, shape);
-        begin_triangles(query);
-        for (int32_t i = 0; i < query->flooded_count; i++) {
-            if (query->flooded[i].image != image) continue;
-            const enf_file_cell *cell = &view->cells[query->flooded[i].cell];
-            for (int32_t k = 0; k < cell->triangle_count; k++) {
-                int32_t triangle = view->cell_triangles[cell->triangle_first + k];
-                if (query->triangle_seen[triangle] == query->triangle_mark) continue;
-                query->triangle_seen[triangle] = query->triangle_mark;
-                if (!meets_triangle(query, shape, triangle, slack)) continue;
-                if (count < capacity) out[count] = (enf_touched){triangle, image};
-                count++;
-            }
-        }
+/// What is being listed.
+typedef struct listing {
+    enf_query *query;
+    int32_t image;
+    const enf_shape *shape;
+    double slack;
+    enf_touched *out;
+    int64_t capacity, count;
+    bool has_near; ///< `near` was found
+    enf_near near;
+} listing;
+
+static void take_triangle(listing *l, int32_t triangle) {
+    enf_query *query = l->query;
+    if (query->triangle_seen[triangle] == query->triangle_mark) return;
+    query->triangle_seen[triangle] = query->triangle_mark;
+    if (!meets_triangle(query, l->shape, triangle, l->slack)) return;
+    if (l->count < l->capacity) l->out[l->count] = (enf_touched){triangle, l->image};
+    l->count++;
+}
+
+/// Is a number in an ascending list?
+static bool lists(const int32_t *list, int32_t count, int32_t number) {
+    int32_t first = 0;
+    while (first < count) {
+        int32_t middle = first + (count - first) / 2;
+        if (list[middle] == number) return true;
+        if (list[middle] < number)
+            first = middle + 1;
+        else
+            count = middle;
     }
-    return count;
+    return false;
+}
+
+static void take_cell(listing *l, int32_t number) {
+    const enf_file_view *view = l->query->view;
+    const enf_file_cell *cell = &view->cells[number];
+    const int32_t *list = view->cell_triangles + cell->triangle_first;
+    if (cell->triangle_count >= TRIANGLES_MANY && !l->has_near) {
+        enf_near_find(&l->near, &l->query->near_index, view, l->shape, l->slack);
+        l->has_near = true;
+    }
+    bool by_near = cell->triangle_count >= TRIANGLES_MANY && l->near.is_known;
+    for (int32_t k = 0; !by_near && k < cell->triangle_count; k++) take_triangle(l, list[k]);
+    for (int32_t k = 0; by_near && k < l->near.count; k++)
+        if (lists(list, cell->triangle_count, l->near.list[k])) take_triangle(l, l->near.list[k]);
+}
+
+int64_t enf_query_triangles(enf_query *query, enf_touched *out, int64_t capacity) {
+    listing l = {.query = query, .out = out, .capacity = capacity};
+    for (int32_t image = 0; query->triangle_seen && image < query->image_count; image++) {
+        l.image = image;
+        l.shape = &query->images[image].shape;
+        l.slack = enf_query_slack(query, l.shape);
+        l.has_near = false;
+        begin_triangles(query);
+        for (int32_t i = 0; i < query->flooded_count; i++)
+            if (query->flooded[i].image == image) take_cell(&l, query->flooded[i].cell);
+    }
+    return l.count;
 }

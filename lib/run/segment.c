@@ -26,13 +26,18 @@ bool enf_fine_point(const enf_file_view *view, const double world[3], double fin
     return true;
 }
 
-/// +1 in front of the barrier's plane, -1 behind, 0 on it. *height: rounded.
-static int side_of_plane(const enf_file_barrier *barrier, const double (*vertices)[3], const double point[3],
-                         double *height) {
-    const double *n = barrier->normal, *origin = vertices[0];
+/// A point's height above the barrier's plane, rounded. *error: at most so far off.
+static double height_of(const enf_file_barrier *barrier, const double origin[3], const double point[3],
+                        double *error) {
+    const double *n = barrier->normal;
     double x = point[0] - origin[0], y = point[1] - origin[1], z = point[2] - origin[2];
-    *height = n[0] * x + n[1] * y + n[2] * z;
-    if (fabs(*height) > PLANE_ROUNDING * (fabs(x) + fabs(y) + fabs(z))) return *height > 0 ? 1 : -1;
+    *error = PLANE_ROUNDING * (fabs(x) + fabs(y) + fabs(z));
+    return n[0] * x + n[1] * y + n[2] * z;
+}
+
+/// +1 in front of the barrier's plane, -1 behind, 0 on it.
+static int side_of_plane(double height, double error, const double (*vertices)[3], const double point[3]) {
+    if (fabs(height) > error) return height > 0 ? 1 : -1;
     return enf_points_orient(vertices[0], vertices[1], vertices[2], point);
 }
 
@@ -41,54 +46,86 @@ static double share_of(double from_height, double to_height) {
     return whole > 0 ? height / whole : 0.5;
 }
 
-/// True if the line passes every edge on the same side, or touches it; not all of them, as rounding may leave
-/// a polygon without area. `turn`: that side.
-static bool passes_edges(const enf_segment *segment, const double (*vertices)[3], int32_t count, int turn) {
+/// Of the volumes that the segment spans with the edges, negative where it passes on the wrong side, the
+/// least. `turn`: +1 or -1, the right side. All edges in any case: what a branch saves here, its
+/// misprediction costs.
+static double least_volume(const enf_segment *segment, const double (*vertices)[3], int32_t count,
+                           double turn) {
     const double *a = segment->from, *b = segment->to, *last = vertices[count - 1];
-    double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    double v[3] = {last[0] - a[0], last[1] - a[1], last[2] - a[2]};
-    bool beside = false;
+    double way[3] = {(b[0] - a[0]) * turn, (b[1] - a[1]) * turn, (b[2] - a[2]) * turn};
+    double v[3] = {last[0] - a[0], last[1] - a[1], last[2] - a[2]}, least = INFINITY;
     for (int32_t k = 0; k < count; k++) {
         const double *next = vertices[k];
         double w[3] = {next[0] - a[0], next[1] - a[1], next[2] - a[2]};
         double volume = way[0] * (v[1] * w[2] - v[2] * w[1]) + way[1] * (v[2] * w[0] - v[0] * w[2]) +
                         way[2] * (v[0] * w[1] - v[1] * w[0]);
-        if (fabs(volume) > SURE) {
-            if ((volume > 0) != (turn > 0)) return false;
-            beside = true;
-        } else {
-            int side = enf_points_orient(a, b, last, next) * turn;
-            if (side < 0) return false;
-            beside = beside || side > 0;
-        }
-        last = next;
-        for (int i = 0; i < 3; i++) v[i] = w[i];
+        least = volume < least ? volume : least;
+        v[0] = w[0];
+        v[1] = w[1];
+        v[2] = w[2];
+    }
+    return least;
+}
+
+/// The same for the edges' exact sides. True if the line passes every edge on the same side, or touches it;
+/// not all of them, as rounding may leave a polygon without area.
+static bool passes_edges_exactly(const enf_segment *segment, const double (*vertices)[3], int32_t count,
+                                 int turn) {
+    const double *last = vertices[count - 1];
+    bool beside = false;
+    for (int32_t k = 0; k < count; k++) {
+        int side = enf_points_orient(segment->from, segment->to, last, vertices[k]) * turn;
+        if (side < 0) return false;
+        beside = beside || side > 0;
+        last = vertices[k];
     }
     return beside;
+}
+
+static bool passes_edges(const enf_segment *segment, const double (*vertices)[3], int32_t count, int turn) {
+    double least = least_volume(segment, vertices, count, turn);
+    if (fabs(least) > SURE) return least > 0;
+    return passes_edges_exactly(segment, vertices, count, turn);
+}
+
+/// How a segment lies to a barrier's plane.
+typedef struct sides {
+    double from_height, to_height; ///< rounded
+    int from, to;                  ///< +1 in front, -1 behind, 0 on it
+} sides;
+
+/// False if both ends are beside the plane, on the same side for sure.
+static bool find_sides(const enf_segment *segment, const enf_file_barrier *barrier,
+                       const double (*vertices)[3], sides *sides) {
+    double from_error, to_error;
+    double from = height_of(barrier, vertices[0], segment->from, &from_error);
+    double to = height_of(barrier, vertices[0], segment->to, &to_error);
+    if ((fabs(from) > from_error) & (fabs(to) > to_error) & ((from > 0) == (to > 0))) return false;
+    sides->from_height = from;
+    sides->to_height = to;
+    sides->from = side_of_plane(from, from_error, vertices, segment->from);
+    sides->to = side_of_plane(to, to_error, vertices, segment->to);
+    return true;
 }
 
 bool enf_segment_passes(const enf_file_view *view, const enf_segment *segment,
                         const enf_file_barrier *barrier, double *share) {
     const double(*vertices)[3] = view->barrier_vertices + barrier->vertex_first;
-    double from_height, to_height;
-    int from = side_of_plane(barrier, vertices, segment->from, &from_height);
-    if (from == 0) return false;
-    int to = side_of_plane(barrier, vertices, segment->to, &to_height);
-    if (from * to >= 0 || !passes_edges(segment, vertices, barrier->vertex_count, -from)) return false;
-    if (share) *share = share_of(from_height, to_height);
+    sides sides;
+    if (!find_sides(segment, barrier, vertices, &sides) || sides.from * sides.to >= 0) return false;
+    if (!passes_edges(segment, vertices, barrier->vertex_count, -sides.from)) return false;
+    if (share) *share = share_of(sides.from_height, sides.to_height);
     return true;
 }
 
 bool enf_segment_meets(const enf_file_view *view, const enf_segment *segment, const enf_file_barrier *barrier,
                        enf_meeting *meeting) {
     const double(*vertices)[3] = view->barrier_vertices + barrier->vertex_first;
-    double from_height, to_height;
-    int from = side_of_plane(barrier, vertices, segment->from, &from_height);
-    int to = side_of_plane(barrier, vertices, segment->to, &to_height);
-    if (from == to) return false;
-    meeting->from_front = from > to;
-    if (!passes_edges(segment, vertices, barrier->vertex_count, from > to ? -1 : 1)) return false;
-    meeting->touches = from == 0 || to == 0;
-    meeting->share = from == 0 ? 0 : to == 0 ? 1 : share_of(from_height, to_height);
+    sides sides;
+    if (!find_sides(segment, barrier, vertices, &sides) || sides.from == sides.to) return false;
+    meeting->from_front = sides.from > sides.to;
+    if (!passes_edges(segment, vertices, barrier->vertex_count, meeting->from_front ? -1 : 1)) return false;
+    meeting->touches = sides.from == 0 || sides.to == 0;
+    meeting->share = sides.from == 0 ? 0 : sides.to == 0 ? 1 : share_of(sides.from_height, sides.to_height);
     return true;
 }

@@ -26,7 +26,8 @@ static int32_t find_wall(const enf_file_view *view, const enf_segment *segment, 
 static bool pass_portals(const enf_way *way, const enf_sight_query *query, enf_sight *sight) {
     enf_passed passed = {query->portals, query->portal_capacity, 0};
     bool wanted = query->portals && query->portal_capacity > 0;
-    if (!wanted && !enf_way_meets_change(way)) return true;
+    enf_way_look look = wanted ? ENF_WAY_UNCLEAR : enf_way_look_ahead(way, &sight->portal);
+    if (look != ENF_WAY_UNCLEAR) return look == ENF_WAY_CLEAR;
     int32_t cell = sight->from.cell;
     enf_way_end end = enf_way_pass(way, ENF_WAY_WHOLE, &cell, sight->to.cell, &passed);
     sight->portal = end.portal;

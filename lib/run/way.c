@@ -38,19 +38,32 @@ static int32_t find_shut(const enf_way *way, const enf_crossings *crossings) {
     return i;
 }
 
-bool enf_way_meets_change(const enf_way *way) {
-    if (!enf_instance_is_changed(way->instance)) return false;
+/// What a portal on the way means for it. *shut: the nearest one that is shut so far.
+static enf_way_look look_at(const enf_way *way, const enf_file_barrier *barrier, enf_crossing *shut) {
+    enf_meeting meeting;
+    if (barrier->kind != ENF_FILE_BARRIER_PORTAL) return ENF_WAY_CLEAR;
+    if (!enf_instance_pair_is_changed(way->instance, barrier->index)) return ENF_WAY_CLEAR;
+    if (!enf_segment_meets(way->view, &way->segment, barrier, &meeting)) return ENF_WAY_CLEAR;
+    if (meeting.touches) return ENF_WAY_UNCLEAR;
+    enf_crossing crossing = {meeting.share, barrier->index + !meeting.from_front, false};
+    enf_passage passage = enf_instance_passage(way->instance, way->view, crossing.portal);
+    if (!is_shut(way, &crossing, &passage)) return passage.matrix ? ENF_WAY_UNCLEAR : ENF_WAY_CLEAR;
+    if (crossing.share < shut->share) *shut = crossing;
+    return ENF_WAY_STOPPED;
+}
+
+enf_way_look enf_way_look_ahead(const enf_way *way, int32_t *portal) {
+    *portal = -1;
+    if (!enf_instance_is_changed(way->instance)) return ENF_WAY_CLEAR;
     enf_walk walk;
     enf_walk_begin(&walk, way->view, &way->segment, way->view->portal_nodes, way->view->portal_node_count);
+    walk.below = enf_instance_changed_below(way->instance, way->view->portal_node_count);
+    enf_crossing shut = {.share = ENF_WAY_WHOLE, .portal = -1};
     int32_t number;
-    while ((number = enf_walk_next(&walk)) >= 0) {
-        const enf_file_barrier *barrier = &way->view->barriers[number];
-        enf_meeting meeting;
-        if (barrier->kind != ENF_FILE_BARRIER_PORTAL) continue;
-        if (!enf_instance_pair_is_changed(way->instance, barrier->index)) continue;
-        if (enf_segment_meets(way->view, &way->segment, barrier, &meeting)) return true;
-    }
-    return false;
+    while ((number = enf_walk_next(&walk)) >= 0)
+        if (look_at(way, &way->view->barriers[number], &shut) == ENF_WAY_UNCLEAR) return ENF_WAY_UNCLEAR;
+    *portal = shut.portal;
+    return shut.portal >= 0 ? ENF_WAY_STOPPED : ENF_WAY_CLEAR;
 }
 
 static void note(enf_passed *passed, int32_t portal) {

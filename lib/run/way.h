@@ -38,9 +38,15 @@ typedef struct enf_way_end {
 /// Sets the ends. False if one is beyond the fine grid, or not finite.
 bool enf_way_set(enf_way *way, const double from[3], const double to[3]);
 
-/// Does the way meet a portal that is not open, or leads elsewhere? If not, it is the same as without an
-/// instance.
-bool enf_way_meets_change(const enf_way *way);
+typedef enum enf_way_look {
+    ENF_WAY_CLEAR,   ///< the same as without an instance
+    ENF_WAY_STOPPED, ///< by a portal between its ends
+    ENF_WAY_UNCLEAR  ///< an end lies on a portal that is not as it was compiled, or one leads elsewhere
+} enf_way_look;
+
+/// What the portals that are not as they were compiled mean for the way, without the chain of cells. *portal:
+/// the first that stops it, or -1.
+enf_way_look enf_way_look_ahead(const enf_way *way, int32_t *portal);
 
 /// Passes from *cell on, up to a share of the segment. A portal that is shut ends the way wherever it lies
 /// between its ends. One that an end lies on, or that leads elsewhere, does so only as part of the chain of

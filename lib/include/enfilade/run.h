@@ -98,9 +98,10 @@ ENF_API const char *enf_world_kind_name(enf_world_kind kind);
 
 /// Finds a point given in world coordinates. `hint`: the tetrahedron of an earlier answer nearby, or -1; it
 /// changes the time, never the answer. A walk from the hint, or else from a grid of bricks that the compiler
-/// stores, takes a bounded number of steps, a few as a rule; where it does not end inside a fine cell (on
-/// borders, outside of the hull, from bad hints in files without bricks) a tree of boxes is searched, O(log
-/// n) as far as its boxes do not overlap.
+/// stores, takes a few steps as a rule and ends where the point is, or where it leaves the hull. On a border
+/// the tetrahedra around the point are looked at, too. Only where a walk takes hundreds of steps, hundreds of
+/// tetrahedra meet in the point, or the file has no bricks there, a tree of boxes is searched, O(log n) as
+/// far as its boxes do not overlap.
 ///
 /// The point is rounded to the nearest of a grid as fine as doubles of the world's size are; from there on
 /// the answer is exact. Of several fine cells that share a point (on a face, edge or vertex) it is the lowest
