@@ -47,9 +47,19 @@ static void edges_removed_add_least(void **state) {
         double least = INFINITY, area = enf_polygon_area((const double(*)[2])before, count);
         for (int32_t i = 0; i < count; i++) least = fmin(least, growth((const double(*)[2])before, count, i));
         int32_t target = n % 2 ? 4 : count - 1;
-        assert_int_equal(enf_polygon_simplify(corners, count, target), target);
+        target = enf_polygon_simplify(corners, count, target);
+        assert_true(target == 4 || target == count - 1);
         double grown = enf_polygon_area((const double(*)[2])corners, target) - area;
-        if (n % 2 == 0 && fabs(grown - least) > 1e-9 * (1 + least)) fail_msg("%g for %g", grown, least);
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int32_t i = 0; i < count; i++)
+            for (int a = 0; a < 2; a++) {
+                low[a] = fmin(low[a], before[i][a]);
+                high[a] = fmax(high[a], before[i][a]);
+            }
+        const double most = (high[0] - low[0]) * (high[1] - low[1]) - area;
+        if (grown > most + 1e-12) fail_msg("%g is more than the rectangle's %g", grown, most);
+        if (n % 2 == 0 && least < most && fabs(grown - least) > 1e-9 * (1 + least))
+            fail_msg("%g for %g", grown, least);
         for (int32_t i = 0; i < target; i++)
             for (int32_t k = 0; k < count; k++) {
                 const double *a = corners[i], *b = corners[(i + 1) % target], *p = before[k];
@@ -57,6 +67,18 @@ static void edges_removed_add_least(void **state) {
                 assert_true(side >= -1e-9 * hypot(b[0] - a[0], b[1] - a[1]) - 1e-15);
             }
     }
+}
+
+/// Whose edges are nearly parallel, so that they would meet far away.
+static void long_polygons_become_rectangles(void **state) {
+    double corners[6][2] = {{0, 0}, {1, 0}, {1 + 1e-9, 0.5}, {1, 1}, {0, 1}, {-1e-9, 0.5}};
+    (void)state;
+    assert_int_equal(enf_polygon_simplify(corners, 6, 4), 4);
+    const double area = enf_polygon_area((const double(*)[2])corners, 4);
+    assert_true(area >= 1 && area < 1 + 1e-8);
+    double pencil[5][2] = {{0, 0}, {1, 1}, {1e6, 1e6 + 1}, {1e6, 1e6 + 2}, {-1e-7, 1}};
+    assert_int_equal(enf_polygon_simplify(pencil, 5, 4), 4);
+    assert_true(enf_polygon_area((const double(*)[2])pencil, 4) <= 1.0001e12);
 }
 
 /// Hulls are convex and contain their points, also of corners that are the same but for rounding.
@@ -123,6 +145,7 @@ static void lines_lose_no_corner(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(edges_removed_add_least),
+        cmocka_unit_test(long_polygons_become_rectangles),
         cmocka_unit_test(hulls_are_convex),
         cmocka_unit_test(lines_lose_no_corner),
     };

@@ -58,7 +58,8 @@ int32_t enf_hull(double (*points)[2], int32_t count);
 double enf_polygon_area(const double (*corners)[2], int32_t count);
 
 /// Removes edges until there are at most `edges_max` (4 or more), each time the one whose neighbours, when
-/// prolonged, add the least area (the thesis, 2.3.4). Returns how many are left.
+/// prolonged, add the least area (the thesis, 2.3.4); it becomes the rectangle around if that is smaller.
+/// Returns how many are left.
 int32_t enf_polygon_simplify(double (*corners)[2], int32_t count, int32_t edges_max);
 
 /// Removes edges shorter than `shortest`, whose directions may be rounded away: the neighbours are prolonged

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Polygons of fewer edges around polygons. An edge can go if its two neighbours meet beyond it; what they
 // then add is a triangle. Of five edges or more of a convex polygon some edge can always go: the outer angles
-// at the ends of all edges add up to 4 pi, so they are below pi at one of them.
+// at the ends of all edges add up to 4 pi, so they are below pi at one of them. Edges that are nearly
+// parallel meet far away: then the rectangle around is better.
 #include "run/view_region.h"
 
 #include <math.h>
@@ -50,7 +51,23 @@ int32_t enf_polygon_tidy(double (*corners)[2], int32_t count, double shortest) {
     return count;
 }
 
+/// Makes a polygon the rectangle around some points. Returns its four corners.
+static int32_t take_rectangle(double (*corners)[2], const double low[2], const double high[2]) {
+    for (int i = 0; i < 4; i++) {
+        corners[i][0] = i == 1 || i == 2 ? high[0] : low[0];
+        corners[i][1] = i >= 2 ? high[1] : low[1];
+    }
+    return 4;
+}
+
 int32_t enf_polygon_simplify(double (*corners)[2], int32_t count, int32_t edges_max) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    if (count <= edges_max) return count;
+    for (int32_t i = 0; i < count; i++)
+        for (int axis = 0; axis < 2; axis++) {
+            low[axis] = fmin(low[axis], corners[i][axis]);
+            high[axis] = fmax(high[axis], corners[i][axis]);
+        }
     while (count > edges_max) {
         double least = INFINITY, best[2] = {0, 0}, meet[2];
         int32_t edge = -1;
@@ -64,5 +81,7 @@ int32_t enf_polygon_simplify(double (*corners)[2], int32_t count, int32_t edges_
         if (edge < 0) break; // not convex
         count = remove_edge(corners, count, edge, best);
     }
-    return count;
+    const double area = (high[0] - low[0]) * (high[1] - low[1]);
+    const bool is_good = count <= edges_max && enf_polygon_area((const double(*)[2])corners, count) <= area;
+    return is_good ? count : take_rectangle(corners, low, high);
 }
