@@ -62,6 +62,7 @@ static void halve(first_hit_scene *scene, int32_t first, int32_t count, int axis
     }
 }
 
+// NOLINTNEXTLINE(misc-no-recursion): halves
 static void divide(first_hit_scene *scene, int32_t first, int32_t count) {
     first_hit_node *node = &scene->nodes[scene->node_count++];
     *node = (first_hit_node){.first = first, .count = count};

@@ -33,7 +33,7 @@ static void choose_bricks(enf_file_start *start, const enf_file_view *view) {
         size[a] = fmax(high[a] - low[a], largest * flattest);
         volume *= size[a] / largest;
     }
-    double wanted = fmax(1, fmin(view->tetrahedron_count / 4, brick_max)),
+    double wanted = fmax(1, fmin(floor(view->tetrahedron_count / 4.0), brick_max)),
            edge = largest * cbrt(volume / wanted);
     for (int a = 0; a < 3; a++) {
         start->count[a] = (int32_t)fmax(1, size[a] / edge);

@@ -148,7 +148,7 @@ static void set_used(enf_instance *instance, int32_t portal, bool used) {
 /// Memory for a transform of a portal, and for the lists.
 static bool reserve_transform(enf_instance *instance, int32_t portal) {
     size_t count = (size_t)instance->view->portal_count;
-    if (!instance->transforms) instance->transforms = calloc(count, sizeof *instance->transforms);
+    if (!instance->transforms) instance->transforms = calloc(count, sizeof(transform *));
     if (!instance->moving) instance->moving = malloc(count * sizeof *instance->moving);
     if (!instance->transforms || !instance->moving) return false;
     transform **place = &instance->transforms[portal];

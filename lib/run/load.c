@@ -101,7 +101,8 @@ enf_status enf_world_load(enf_world *world, uint32_t loads, enf_error *error) {
 }
 
 enf_status enf_world_need(const enf_world *world, uint32_t loads, enf_error *error) {
-    return enf_world_load((enf_world *)(uintptr_t)world, loads, error); // worlds are never const themselves
+    // Worlds are never const themselves. NOLINTNEXTLINE(performance-no-int-to-ptr)
+    return enf_world_load((enf_world *)(uintptr_t)world, loads, error);
 }
 
 bool enf_world_has(const enf_world *world, enf_load load) {

@@ -192,6 +192,7 @@ static bool is_air(const maker *maker, int32_t at) {
 static bool deal(maker *maker, int32_t at, const sheet *sheet, int32_t front);
 
 /// A leaf: the one in front is found first, then those behind.
+// NOLINTNEXTLINE(misc-no-recursion): ENF_AIR_DEPTH_MOST levels at most
 static bool arrive(maker *maker, int32_t leaf, const sheet *sheet, int32_t front) {
     if (front < 0) return deal(maker, maker->node->child[0], sheet, leaf);
     if (maker->node->wall_count > 0) return pierce(maker, leaf, front, sheet);
@@ -199,6 +200,7 @@ static bool arrive(maker *maker, int32_t leaf, const sheet *sheet, int32_t front
 }
 
 /// Takes the sheet down the tree. `front`: the leaf in front of it, if that is known, or -1.
+// NOLINTNEXTLINE(misc-no-recursion): ENF_AIR_DEPTH_MOST levels at most
 static bool deal(maker *maker, int32_t at, const sheet *sheet, int32_t front) {
     if (!is_air(maker, at)) return true;
     if (at < 0) return arrive(maker, -1 - at, sheet, front);

@@ -110,6 +110,7 @@ static bool put_piece(slicer *slicer, int32_t leaf, const body *body) {
 static bool sink(slicer *slicer, int32_t at, const body *body);
 
 /// On both sides of the plane: cuts the body, and goes on with both halves.
+// NOLINTNEXTLINE(misc-no-recursion): ENF_AIR_DEPTH_MOST levels at most
 static bool cut(slicer *slicer, int32_t at, const body *whole) {
     const enf_air_node *node = &slicer->tree->nodes[at];
     size_t kept = slicer->stack_count;
@@ -123,6 +124,7 @@ static bool cut(slicer *slicer, int32_t at, const body *whole) {
 }
 
 /// Takes the body down the tree.
+// NOLINTNEXTLINE(misc-no-recursion): ENF_AIR_DEPTH_MOST levels at most
 static bool sink(slicer *slicer, int32_t at, const body *given) {
     body body = *given;
     while (at >= 0) {

@@ -198,6 +198,7 @@ static bool deal(builder *builder, const int32_t *part, int32_t count, const pla
 static int32_t build(builder *builder, const int32_t *part, int32_t count, int depth);
 
 /// Adds a node, and what is below it.
+// NOLINTNEXTLINE(misc-no-recursion): ENF_AIR_DEPTH_MOST levels at most
 static int32_t divide(builder *builder, const int32_t *part, int32_t count, int depth) {
     enf_air_tree *tree = builder->tree;
     census census = {{0}};
@@ -225,6 +226,7 @@ static int32_t divide(builder *builder, const int32_t *part, int32_t count, int 
 }
 
 /// The part as a leaf, or as a node; -1 - leaf or the node's number.
+// NOLINTNEXTLINE(misc-no-recursion): ENF_AIR_DEPTH_MOST levels at most
 static int32_t build(builder *builder, const int32_t *part, int32_t count, int depth) {
     if (builder->tree->leaf_count < builder->leafs_most) {
         if (count == 0) return -1 - builder->tree->leaf_count++;

@@ -73,7 +73,7 @@ static bool make_casting(casting *casting, int threads) {
     casting->results = enf_array_zeroed((size_t)owners, sizeof *casting->results);
     casting->cost = enf_array_zeroed((size_t)owners, sizeof *casting->cost);
     casting->begun = enf_array_zeroed((size_t)owners, sizeof *casting->begun);
-    casting->beams = enf_array_zeroed((size_t)threads, sizeof *casting->beams);
+    casting->beams = enf_array_zeroed((size_t)threads, sizeof(enf_beams *));
     if (!enf_bits_new(&cast->met, owners, owners) ||
         !enf_follows_make(&casting->follows, cast->shapes->graph, follows, cast->shapes) ||
         !casting->results || !casting->cost || !casting->begun || !casting->beams)
