@@ -75,16 +75,35 @@ static bool make_drawing(enf_checker *checker, drawing *d) {
     return true;
 }
 
+/// Marks what a fine cell sees as seen by a cell; returns how many triangles that adds.
+static int64_t mark_drawn(const enf_file_view *view, drawing *d, int32_t cell, int32_t fine) {
+    int64_t added = 0;
+    for (int64_t k = view->seen_offset[fine]; k < view->seen_offset[fine + 1]; k++) {
+        if (d->mark[view->seen[k]] == cell + 1) continue;
+        d->mark[view->seen[k]] = cell + 1;
+        added += d->triangles[view->seen[k]];
+    }
+    return added;
+}
+
+static bool is_sealed(const enf_file_view *view, int32_t facet) {
+    for (int32_t p = view->facet_piece[facet]; p < view->facet_piece[facet + 1]; p++)
+        if (view->piece_cover[p] == -2) return true;
+    return false;
+}
+
 /// Detail objects may be listed besides: they are only near.
 static bool check_drawn_cell(enf_checker *checker, drawing *d, int32_t cell) {
     const enf_file_view *view = checker->view;
     int64_t wanted = 0, listed = 0, first = view->cells[cell].triangle_first,
             end = first + view->cells[cell].triangle_count;
     for (int32_t i = d->first[cell]; i < d->first[cell + 1]; i++) {
-        for (int64_t k = view->seen_offset[d->fine[i]]; k < view->seen_offset[d->fine[i] + 1]; k++) {
-            if (d->mark[view->seen[k]] == cell + 1) continue;
-            d->mark[view->seen[k]] = cell + 1;
-            wanted += d->triangles[view->seen[k]];
+        const int32_t fine = d->fine[i];
+        wanted += mark_drawn(view, d, cell, fine);
+        for (int32_t k = view->fine_facet[fine]; k < view->fine_facet[fine + 1]; k++) {
+            const int32_t *sides = view->facet_fine[view->fine_facets[k]], other = sides[sides[0] == fine];
+            if (other >= 0 && is_sealed(view, view->fine_facets[k]))
+                wanted += mark_drawn(view, d, cell, other);
         }
     }
     for (int64_t i = first; i < end; i++) {
@@ -102,8 +121,9 @@ static bool check_drawn_cell(enf_checker *checker, drawing *d, int32_t cell) {
 
 void enf_check_drawn(enf_checker *checker) {
     const enf_file_view *view = checker->view;
-    enf_check_begin(checker, "decimate: triangles",
-                    "every cell lists the triangles whose front its fine cells see");
+    enf_check_begin(
+        checker, "decimate: triangles",
+        "every cell lists the triangles whose front its fine cells see, and those behind their seals");
     if (!view->has_geometry) {
         checker->row->skipped = true;
         return;

@@ -211,22 +211,48 @@ static bool append(drawer *d, int32_t triangle) {
     return true;
 }
 
-/// The different clean polygons that a cell's fine cells see, ascending, as triangles.
-static bool list_seen(drawer *d, const int32_t *fine, int32_t fine_count, int32_t *stamp, int32_t mark,
-                      int32_t *found) {
-    const enf_complex *complex = &d->build->complex;
-    size_t count = 0;
-    for (int32_t i = 0; i < fine_count; i++) {
-        for (int64_t k = complex->seen_offset[fine[i]]; k < complex->seen_offset[fine[i] + 1]; k++) {
-            int32_t polygon = complex->seen[k];
-            if (stamp[polygon] == mark) continue;
-            stamp[polygon] = mark;
-            found[count++] = polygon;
+/// The different clean polygons that a cell sees.
+typedef struct seen_list {
+    int32_t *stamp; ///< per polygon: the last cell that sees it, + 1
+    int32_t *found;
+    size_t count;
+    int32_t mark;
+} seen_list;
+
+static void note_seen(const enf_complex *complex, int32_t fine, seen_list *list) {
+    for (int64_t k = complex->seen_offset[fine]; k < complex->seen_offset[fine + 1]; k++) {
+        int32_t polygon = complex->seen[k];
+        if (list->stamp[polygon] == list->mark) continue;
+        list->stamp[polygon] = list->mark;
+        list->found[list->count++] = polygon;
+    }
+}
+
+/// What a fine cell's neighbours behind sealed cracks see: those are thinner than the tolerance, and what is
+/// in them stands on the seal.
+static void note_behind_seals(const enf_complex *complex, int32_t fine, seen_list *list) {
+    for (int32_t i = complex->cell_facet[fine]; i < complex->cell_facet[fine + 1]; i++) {
+        const int32_t facet = complex->cell_facets[i];
+        for (int32_t p = complex->facet_piece[facet]; p < complex->facet_piece[facet + 1]; p++) {
+            if (complex->piece_cover[p] != ENF_PIECE_SEALED) continue;
+            const int32_t *sides = complex->facet_cell[facet], other = sides[sides[0] == fine];
+            if (other >= 0) note_seen(complex, other, list);
         }
     }
-    qsort(found, count, sizeof *found, compare_int32);
-    for (size_t i = 0; i < count; i++) {
-        for (int32_t t = d->polygon_triangle[found[i]]; t < d->polygon_triangle[found[i] + 1]; t++) {
+}
+
+/// The triangles of the polygons that a cell's fine cells see, ascending.
+static bool list_seen(drawer *d, const int32_t *fine, int32_t fine_count, seen_list *list) {
+    list->count = 0;
+    list->mark++;
+    for (int32_t i = 0; i < fine_count; i++) {
+        note_seen(&d->build->complex, fine[i], list);
+        if (d->build->regions.sealed > 0) note_behind_seals(&d->build->complex, fine[i], list);
+    }
+    qsort(list->found, list->count, sizeof *list->found, compare_int32);
+    for (size_t i = 0; i < list->count; i++) {
+        const int32_t polygon = list->found[i];
+        for (int32_t t = d->polygon_triangle[polygon]; t < d->polygon_triangle[polygon + 1]; t++) {
             if (!append(d, t)) return false;
         }
     }
@@ -348,14 +374,13 @@ static bool find_details(detail_finder *f) {
 }
 
 static bool list_cells(drawer *d, const detail_finder *f, const int32_t *fine_offset, const int32_t *fine,
-                       int32_t *stamp, int32_t *found) {
+                       seen_list *list) {
     enf_file_view *view = &d->image->view;
     enf_file_cell *cells = (enf_file_cell *)view->cells; // the image's own
     size_t next = 0;
     for (int32_t i = 0; i < view->cell_count; i++) {
         cells[i].triangle_first = (int64_t)d->list_count;
-        if (!list_seen(d, fine + fine_offset[i], fine_offset[i + 1] - fine_offset[i], stamp, i + 1, found))
-            return false;
+        if (!list_seen(d, fine + fine_offset[i], fine_offset[i + 1] - fine_offset[i], list)) return false;
         for (; next < f->detail_count && f->details[next].cell == i; next++) {
             if (!append(d, f->details[next].triangle)) return false;
         }
@@ -368,16 +393,16 @@ static bool list_triangles(drawer *d) {
     const enf_build *build = d->build;
     detail_finder finder = {.d = d};
     int32_t *offset = NULL, *fine = NULL;
-    int32_t *stamp = enf_array_zeroed(build->mesh.polygon_count, sizeof *stamp);
-    int32_t *found = enf_array_new(build->mesh.polygon_count, sizeof *found);
-    bool good = stamp && found;
+    seen_list list = {.stamp = enf_array_zeroed(build->mesh.polygon_count, sizeof *list.stamp),
+                      .found = enf_array_new(build->mesh.polygon_count, sizeof *list.found)};
+    bool good = list.stamp && list.found;
     good = good && group_by(build->cell_of, build->complex.cell_count, build->cell_count, &offset, &fine);
     if (!good) out_of_memory(d);
-    good = good && find_details(&finder) && list_cells(d, &finder, offset, fine, stamp, found);
+    good = good && find_details(&finder) && list_cells(d, &finder, offset, fine, &list);
     free(offset);
     free(fine);
-    free(stamp);
-    free(found);
+    free(list.stamp);
+    free(list.found);
     free(finder.stack);
     free(finder.stamp);
     free(finder.details);
