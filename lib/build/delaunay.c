@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "base/sphere.h"
 #include "build/tet_order.h"
+#include "build/tetrahedra.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -116,16 +117,11 @@ static bool is_finite(const int32_t corner[4]) {
     return (corner[0] | corner[1] | corner[2] | corner[3]) >= 0;
 }
 
-/// Which corner is the point (or at infinity)? One of them is.
-static int find_corner(const int32_t corner[4], int32_t point) {
-    return (corner[1] == point) + 2 * (corner[2] == point) + 3 * (corner[3] == point);
-}
-
 /// Must the tetrahedron go when the point comes? At infinity the sphere is the half-space beyond the hull
 /// and, in the hull's plane, the circle in which that meets the sphere of the tetrahedron inside.
 static inline bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
     if (is_finite(d->tets[t].corner)) return sphere_holds(d, d->tets[t].corner, point);
-    const int infinity = find_corner(d->tets[t].corner, AT_INFINITY);
+    const int infinity = enf_tetrahedron_place(d->tets[t].corner, AT_INFINITY);
     const int side = side_of_face(d, d->tets[t].corner, infinity, point);
     return side > 0 || (side == 0 && sphere_holds(d, d->tets[d->tets[t].next[infinity] >> 2].corner, point));
 }
@@ -136,7 +132,7 @@ static inline bool is_in_conflict(const triangulation *d, int32_t t, int32_t poi
 /// tetrahedra cannot lead round in circles (H. Edelsbrunner, 1990).
 static int32_t find_conflict(const triangulation *d, int32_t point) {
     int32_t t = d->last;
-    if (!is_finite(d->tets[t].corner)) t = d->tets[t].next[find_corner(d->tets[t].corner, AT_INFINITY)] >> 2;
+    if (!is_finite(d->tets[t].corner)) t = d->tets[t].next[enf_tetrahedron_place(d->tets[t].corner, AT_INFINITY)] >> 2;
     for (int32_t came = -1;;) {
         int k = 0;
         for (; k < 4; k++) {
@@ -251,7 +247,7 @@ static void join_tetrahedron(triangulation *d, int32_t face) {
         for (int32_t next; (next = d->tets[u].next[leave]) >= 0;) {
             u = next >> 2;
             came = next & 3;
-            leave = 6 - came - find_corner(d->tets[u].corner, from) - find_corner(d->tets[u].corner, to);
+            leave = 6 - came - enf_tetrahedron_place(d->tets[u].corner, from) - enf_tetrahedron_place(d->tets[u].corner, to);
         }
         const int32_t other = -1 - d->tets[u].next[leave];
         join_faces(d, 4 * t + k, 4 * other + corner_places[leave][came]);

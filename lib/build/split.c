@@ -390,7 +390,7 @@ static void cut_part(void *user, int32_t index, int thread) {
                 enf_subdivision_start(&c->space, &all->arrangement->geometry, &all->arrangement->tets,
                                       &c->part, all->parts.cuts[index]) &&
                 enf_polygon_lines_reserve(&c->lines, all->arrangement->mesh->point_count) &&
-                enf_settler_start(&c->settler, all->arrangement, &c->space, yield, all->reflex) &&
+                enf_settler_start(&c->settler, all->arrangement, &c->space, yield, &c->lines, all->reflex) &&
                 enf_settler_settle_still(&c->settler);
     if (good) {
         if (c->settler.join) join_tetrahedra(c);

@@ -84,8 +84,7 @@ void enf_subdivision_triangle(const enf_tet_mesh *tets, int32_t facet, int32_t c
     for (int i = 0; i < 3; i++) {
         // The edge to the next corner lies on the face opposite the third one.
         int32_t third = tets->facet_corners[facet][(i + 2) % 3];
-        int opposite = 0;
-        while (tets->corners[t][opposite] != third) opposite++;
+        int opposite = enf_tetrahedron_place(tets->corners[t], third);
         corner[i] = tets->facet_corners[facet][i];
         edge_plane[i] = tets->facets[t][opposite];
     }
@@ -261,11 +260,10 @@ int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
             int32_t after = s->halves[h].next, to = s->halves[after].vertex;
             int sign_to = enf_subdivision_sign(s, to);
             if (sign * sign_to < 0 && !note_cut_edge(s, h, from, to)) return -1;
-            if (sign == 0) {
-                beside->along |= sign_to == 0;
-                if (!enf_array_reserve(s->touching, s->touching_capacity, s->touching_count + 1)) return -1;
-                s->touching[s->touching_count++] = from;
-            }
+            if (!enf_array_reserve(s->touching, s->touching_capacity, s->touching_count + 1)) return -1;
+            beside->along |= (sign == 0) & (sign_to == 0);
+            s->touching[s->touching_count] = from; // counted where it belongs there: nobody can guess
+            s->touching_count += sign == 0;
             h = after;
             from = to;
             sign = sign_to;

@@ -29,6 +29,11 @@ void enf_tet_mesh_free(enf_tet_mesh *mesh);
 enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t count, int32_t point_count,
                              enf_error *error);
 
+/// Which corner is the point? One of them is.
+static inline int enf_tetrahedron_place(const int32_t corner[4], int32_t point) {
+    return (corner[1] == point) + 2 * (corner[2] == point) + 3 * (corner[3] == point);
+}
+
 /// The three corners other than number `opposite`, ascending. Returns the side of their plane (1 in front, 0
 /// behind) on which the fourth corner of a positively oriented tetrahedron lies.
 int enf_tetrahedron_face(const int32_t tetrahedron[4], int opposite, int32_t face[3]);
