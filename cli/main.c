@@ -56,7 +56,7 @@ int main(int argc, char **argv) {
     // Big arrays go back to the system when they are freed, and move without being copied when they grow.
     // (glibc raises its threshold otherwise as soon as the first one is freed.) Smaller ones, and a few
     // megabytes of what was free, stay: fresh pages from the system take time.
-    mallopt(M_MMAP_THRESHOLD, 512 * 1024);
+    mallopt(M_MMAP_THRESHOLD, 1024 * 1024);
     mallopt(M_TRIM_THRESHOLD, 4 * 1024 * 1024);
 #endif
     if (argc < 2) {

@@ -476,6 +476,7 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     const enf_crew watched = {.threads = crew->threads, .watch = watch_half, .user = &half};
     all.crew = &watched;
     bool stopped, good = enf_candidates_find(&all.candidates, arrangement, &watched, &stopped);
+    enf_tet_mesh_unlist(&arrangement->tets);
     half = (half_watch){.crew = crew, .begun = FLOOD_SHARE, .share = 1 - FLOOD_SHARE};
     good = good && split_parts(&all, complex);
     stopped = stopped || atomic_load(&all.stopped);

@@ -42,6 +42,9 @@ int enf_tetrahedron_face(const int32_t tetrahedron[4], int opposite, int32_t fac
 /// more.) False without memory.
 bool enf_tet_mesh_list(enf_tet_mesh *mesh, const int32_t *facets, size_t count);
 
+/// Gives back the memory of the lists: no facet can be found by its corners any more.
+void enf_tet_mesh_unlist(enf_tet_mesh *mesh);
+
 /// The facet with these three corners, in any order, or -1.
 int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c);
 
