@@ -32,9 +32,9 @@ static bool reserve(enf_yield *yield, size_t facets, size_t covers, size_t piece
            enf_array_reserve(complex->piece_cover, yield->piece_cover_capacity, pieces);
 }
 
-bool enf_yield_reserve(enf_yield *yield, size_t facets, size_t covers) {
+bool enf_yield_reserve(enf_yield *yield, size_t facets, size_t corners, size_t covers) {
     enf_complex *complex = &yield->complex;
-    return reserve(yield, facets, covers, facets) && reserve_loops(&complex->facets, facets, 3 * facets) &&
+    return reserve(yield, facets, covers, facets) && reserve_loops(&complex->facets, facets, corners) &&
            reserve_loops(&complex->covers, covers, 0) && reserve_loops(&complex->pieces, facets, 0);
 }
 
