@@ -50,19 +50,33 @@ static int32_t new_edge(enf_subdivision *s) {
     return edge;
 }
 
+/// Puts a half at the head of the list at its edge.
+static void list_half(enf_subdivision *s, int32_t h) {
+    enf_half *half = &s->halves[h];
+    int32_t *head = &s->edge_half[half->edge];
+    half->radial = *head;
+    half->before = -1;
+    if (*head >= 0) s->halves[*head].before = h;
+    *head = h;
+}
+
 /// Takes a facet's halves out of the lists at their edges.
 static void remove_halves(enf_subdivision *s, int32_t first) {
+    enf_half *halves = s->halves;
     int32_t h = first, last;
     do {
-        int32_t edge = s->halves[h].edge, *link = &s->edge_half[edge];
-        while (*link != h) link = &s->halves[*link].radial;
-        *link = s->halves[h].radial;
-        if (s->edge_half[edge] < 0) {
+        int32_t edge = halves[h].edge, before = halves[h].before, after = halves[h].radial;
+        if (after >= 0) halves[after].before = before;
+        if (before >= 0) {
+            halves[before].radial = after;
+        } else if (after >= 0) {
+            s->edge_half[edge] = after;
+        } else {
             s->edge_half[edge] = s->free_edge;
             s->free_edge = edge;
         }
         last = h;
-        h = s->halves[h].next;
+        h = halves[h].next;
     } while (h != first);
     s->halves[last].next = s->free_half;
     s->free_half = first;
@@ -130,8 +144,7 @@ static void pair_list(enf_subdivision *s, int32_t first, int32_t low) {
             s->edge_half[high->edge] = -1;
         }
         half->edge = high->edge;
-        half->radial = s->edge_half[half->edge];
-        s->edge_half[half->edge] = h;
+        list_half(s, h);
     }
 }
 
@@ -316,10 +329,8 @@ static bool split_edge(enf_subdivision *s, int32_t edge, int32_t from, int32_t v
         // `edge` stays with the end it came from.
         half->edge = half->vertex == from ? edge : other;
         second->edge = half->vertex == from ? other : edge;
-        half->radial = s->edge_half[half->edge];
-        s->edge_half[half->edge] = at;
-        second->radial = s->edge_half[second->edge];
-        s->edge_half[second->edge] = added;
+        list_half(s, at);
+        list_half(s, added);
         at = following;
     }
     return true;
@@ -348,8 +359,8 @@ static int32_t split_facet(enf_subdivision *s, int32_t f, int32_t into, int32_t 
     int32_t before = out; // of the part behind
     while (halves[before].next != into) before = halves[before].next;
     halves[before].next = behind;
-    halves[behind] = (enf_half){halves[into].vertex, out, edge, front, s->plane, f};
-    halves[front] = (enf_half){halves[out].vertex, into, edge, -1, s->plane, g};
+    halves[behind] = (enf_half){halves[into].vertex, out, edge, front, -1, s->plane, f};
+    halves[front] = (enf_half){halves[out].vertex, into, edge, -1, behind, s->plane, g};
     s->edge_half[edge] = behind;
     s->facets[g] = s->facets[f];
     s->facets[f].first = behind;
@@ -448,10 +459,9 @@ static bool add_cut_facet(enf_subdivision *s, int32_t node, int32_t cell, int32_
         s->halves[half] = (enf_half){.vertex = part->from,
                                      .next = first,
                                      .edge = part->edge,
-                                     .radial = s->edge_half[part->edge],
                                      .edge_plane = part->edge_plane,
                                      .facet = f};
-        s->edge_half[part->edge] = half;
+        list_half(s, half);
         if (last >= 0) s->halves[last].next = half;
         if (first < 0) first = s->halves[half].next = half;
         last = half;

@@ -16,6 +16,7 @@ typedef struct enf_half {
     int32_t next;   ///< around the facet
     int32_t edge;
     int32_t radial;     ///< the next half at the same edge; -1: the last
+    int32_t before;     ///< the one whose next this is; -1: the first
     int32_t edge_plane; ///< holds the edge; never parallel to the facet. Collinear halves have the same one
     int32_t facet;
 } enf_half;
