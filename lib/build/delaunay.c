@@ -104,11 +104,18 @@ __attribute__((noinline)) static bool perturbed_sphere_holds(const triangulation
     return false;
 }
 
+/// Of a number that is not 0. Either is as likely, so it is asked in a way that compilers make no branch of.
+static inline bool is_negative(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits >> 63;
+}
+
 static inline bool sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
     const double *const at[4] = {point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, corner[2]),
                                  point_at(d, corner[3])};
     double largest, determinant = enf_sphere_determinant(at, point_at(d, point), &largest);
-    if (enf_sphere_is_sure(determinant, largest)) return determinant > 0; // either is as likely: no branch
+    if (enf_sphere_is_sure(determinant, largest)) return !is_negative(determinant);
     const int side = enf_corners_side_of_sphere_exactly(at, point_at(d, point));
     return side > 0 || (side == 0 && perturbed_sphere_holds(d, corner, point));
 }
@@ -132,7 +139,8 @@ static inline bool is_in_conflict(const triangulation *d, int32_t t, int32_t poi
 /// tetrahedra cannot lead round in circles (H. Edelsbrunner, 1990).
 static int32_t find_conflict(const triangulation *d, int32_t point) {
     int32_t t = d->last;
-    if (!is_finite(d->tets[t].corner)) t = d->tets[t].next[enf_tetrahedron_place(d->tets[t].corner, AT_INFINITY)] >> 2;
+    if (!is_finite(d->tets[t].corner))
+        t = d->tets[t].next[enf_tetrahedron_place(d->tets[t].corner, AT_INFINITY)] >> 2;
     for (int32_t came = -1;;) {
         int k = 0;
         for (; k < 4; k++) {
@@ -211,7 +219,7 @@ static int32_t add_tetrahedron(triangulation *d, int32_t face, int32_t point) {
 static int32_t place_of(triangulation *d, int32_t corner) {
     const int32_t last = d->place[corner + 1]; // infinity is -1
     const int32_t new = (last >= d->rim_points) | (d->rim_point[last] != corner);
-    const int32_t place = new ? d->rim_points : last;
+    const int32_t place = last + new *(d->rim_points - last);
     d->place[corner + 1] = (uint8_t)place;
     d->rim_point[place] = corner;
     d->rim_points += new;
@@ -247,7 +255,8 @@ static void join_tetrahedron(triangulation *d, int32_t face) {
         for (int32_t next; (next = d->tets[u].next[leave]) >= 0;) {
             u = next >> 2;
             came = next & 3;
-            leave = 6 - came - enf_tetrahedron_place(d->tets[u].corner, from) - enf_tetrahedron_place(d->tets[u].corner, to);
+            leave = 6 - came - enf_tetrahedron_place(d->tets[u].corner, from) -
+                    enf_tetrahedron_place(d->tets[u].corner, to);
         }
         const int32_t other = -1 - d->tets[u].next[leave];
         join_faces(d, 4 * t + k, 4 * other + corner_places[leave][came]);

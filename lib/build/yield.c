@@ -53,7 +53,7 @@ static void mark_vertices(const enf_yield *yield, const enf_loops *loops, int32_
     const enf_corner *corners = own_corners(yield, loops, &count);
     for (size_t i = 0; i < count; i++) {
         int32_t crossing = corners[i].vertex - points;
-        number[crossing < 0 ? -1 : crossing] = 1;
+        number[crossing | -(crossing < 0)] = 1;
     }
 }
 
@@ -62,9 +62,8 @@ static void renumber_vertices(const enf_yield *yield, const enf_loops *loops, in
     size_t count;
     enf_corner *corners = own_corners(yield, loops, &count);
     for (size_t i = 0; i < count; i++) {
-        int32_t vertex = corners[i].vertex, crossing = vertex - points;
-        int32_t kept = points + number[crossing < 0 ? -1 : crossing];
-        corners[i].vertex = crossing < 0 ? vertex : kept;
+        int32_t vertex = corners[i].vertex, crossing = vertex - points, is_point = -(crossing < 0);
+        corners[i].vertex = (vertex & is_point) | ((points + number[crossing | is_point]) & ~is_point);
     }
 }
 
