@@ -158,25 +158,29 @@ static int32_t find_conflict(const triangulation *d, int32_t point) {
 /// end of its list either way, and counted where it belongs there: processors can't guess where. False
 /// without memory.
 static bool dig_hole(triangulation *d, int32_t first, int32_t point) {
-    d->hole_count = d->rim_count = 0;
-    d->hole[d->hole_count++] = first;
-    d->seen[first] = d->in_hole;
-    for (size_t i = 0; i < d->hole_count; i++) {
-        if (!enf_array_reserve(d->hole, d->hole_capacity, d->hole_count + 5)) return false;
-        if (!enf_array_reserve(d->rim, d->rim_capacity, d->rim_count + 5)) return false;
+    const uint32_t in_hole = d->in_hole;
+    size_t hole_count = 1, rim_count = 0;
+    d->hole[0] = first;
+    d->seen[first] = in_hole;
+    for (size_t i = 0; i < hole_count; i++) {
+        if (!enf_array_reserve(d->hole, d->hole_capacity, hole_count + 5)) return false;
+        if (!enf_array_reserve(d->rim, d->rim_capacity, rim_count + 5)) return false;
         const int32_t t = d->hole[i];
         for (int k = 0; k < 4; k++) {
             const int32_t u = d->tets[t].next[k] >> 2;
-            if (d->seen[u] < d->in_hole) {
+            uint32_t seen = d->seen[u];
+            if (seen < in_hole) {
                 const bool conflict = is_in_conflict(d, u, point);
-                d->seen[u] = d->in_hole + !conflict;
-                d->hole[d->hole_count] = u;
-                d->hole_count += conflict;
+                d->seen[u] = seen = in_hole + !conflict;
+                d->hole[hole_count] = u;
+                hole_count += conflict;
             }
-            d->rim[d->rim_count] = 4 * t + k;
-            d->rim_count += d->seen[u] - d->in_hole;
+            d->rim[rim_count] = 4 * t + k;
+            rim_count += seen - in_hole;
         }
     }
+    d->hole_count = hole_count;
+    d->rim_count = rim_count;
     return true;
 }
 
