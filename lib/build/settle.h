@@ -25,9 +25,9 @@ typedef struct enf_settler {
     enf_subdivision *space;
     enf_yield *yield; ///< where settled facets go
     enf_joiner joiner;
-    bool join; ///< cells may be joined
+    bool join;                ///< cells may be joined
     enf_polygon_lines *lines; ///< borrowed: nobody counts on what they held before
-    enf_pool pool; ///< has the space's geometry while it clips
+    enf_pool pool;            ///< has the space's geometry while it clips
 
     enf_cover *covers;
     size_t cover_count, cover_capacity;
