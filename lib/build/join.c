@@ -63,7 +63,7 @@ static bool is_hopeless(const enf_subdivision *s, const enf_joiner *joiner, int3
 /// The facets at an edge that belong to one of two cells and not to both: a half of each, or -1.
 static void find_beside(const enf_subdivision *s, int32_t edge, const int32_t cell[2], int32_t beside[2]) {
     beside[0] = beside[1] = -1;
-    for (int32_t h = s->edge_half[edge]; h >= 0; h = s->halves[h].radial) {
+    for (int32_t h = s->edge_half[edge]; h > 0; h = s->halves[h].radial) {
         const enf_share *facet = &s->facets[s->halves[h].facet];
         bool first = (facet->cell[0] == cell[0]) | (facet->cell[1] == cell[0]),
              second = (facet->cell[0] == cell[1]) | (facet->cell[1] == cell[1]);
