@@ -54,8 +54,10 @@ static bool is_later(const char *name) {
 int main(int argc, char **argv) {
 #ifdef M_MMAP_THRESHOLD
     // Big arrays go back to the system when they are freed, and move without being copied when they grow.
-    // (glibc raises its threshold otherwise as soon as the first one is freed.)
-    mallopt(M_MMAP_THRESHOLD, 128 * 1024);
+    // (glibc raises its threshold otherwise as soon as the first one is freed.) Smaller ones, and some
+    // megabytes that they have left free, stay for what comes next: fresh pages from the system take time.
+    mallopt(M_MMAP_THRESHOLD, 2 << 20);
+    mallopt(M_TRIM_THRESHOLD, 16 << 20);
 #endif
     if (argc < 2) {
         print_usage(stderr);

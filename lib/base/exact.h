@@ -26,8 +26,8 @@ static inline int enf_points_orient(const double a[3], const double b[3], const 
     double vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
     double wx = d[0] - a[0], wy = d[1] - a[1], wz = d[2] - a[2];
     double determinant = wx * (uy * vz - uz * vy) + wy * (uz * vx - ux * vz) + wz * (ux * vy - uy * vx);
-    if (determinant > ENF_ORIENT_SURE) return 1;
-    if (determinant < -ENF_ORIENT_SURE) return -1;
+    bool above = determinant > ENF_ORIENT_SURE, below = determinant < -ENF_ORIENT_SURE;
+    if (above | below) return above - below; // one branch, which processors guess
     return enf_points_orient_closely(a, b, c, d);
 }
 

@@ -5,6 +5,7 @@
 #ifndef ENF_BASE_SETS_H
 #define ENF_BASE_SETS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 static inline void enf_sets_start(int32_t *parent, int32_t count) {
@@ -17,6 +18,11 @@ static inline int32_t enf_sets_find(int32_t *parent, int32_t item) {
         item = parent[item];
     }
     return item;
+}
+
+/// Most members of large sets point to the same one: no need to look further.
+static inline bool enf_sets_joined(int32_t *parent, int32_t a, int32_t b) {
+    return parent[a] == parent[b] || enf_sets_find(parent, a) == enf_sets_find(parent, b);
 }
 
 static inline void enf_sets_unite(int32_t *parent, int32_t a, int32_t b) {

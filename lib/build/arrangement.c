@@ -2,10 +2,13 @@
 #include "build/arrangement.h"
 
 #include "base/array.h"
+
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 void enf_arrangement_free(enf_arrangement *arrangement) {
+    arrangement->tets.facet_corners = NULL; // the planes have them
     enf_tet_mesh_free(&arrangement->tets);
     free(arrangement->geometry.planes);
     free(arrangement->geometry.filters);
@@ -115,6 +118,17 @@ static void make_edge_planes(void *user, int32_t block, int thread) {
     }
 }
 
+/// The planes of the facets are their corners: they stay where they are, and the others follow them.
+static bool take_facet_planes(enf_arrangement *arrangement, size_t most) {
+    enf_tet_mesh *tets = &arrangement->tets;
+    void *planes = most <= SIZE_MAX / sizeof *tets->facet_corners
+                       ? realloc(tets->facet_corners, most * sizeof *tets->facet_corners)
+                       : NULL;
+    if (planes) tets->facet_corners = planes;
+    arrangement->geometry.planes = tets->facet_corners; // to be freed either way
+    return planes;
+}
+
 static bool reserve_planes(enf_arrangement *arrangement) {
     const enf_mesh *mesh = arrangement->mesh;
     enf_geometry *geometry = &arrangement->geometry;
@@ -122,10 +136,9 @@ static bool reserve_planes(enf_arrangement *arrangement) {
                   (size_t)mesh->polygon_corner[mesh->polygon_count];
     arrangement->polygon_plane = enf_array_new(mesh->polygon_count, sizeof *arrangement->polygon_plane);
     arrangement->polygon_flipped = enf_array_new(mesh->polygon_count, sizeof *arrangement->polygon_flipped);
-    geometry->planes = enf_array_new(most, sizeof *geometry->planes);
     geometry->filters = enf_array_new(mesh->polygon_count, sizeof *geometry->filters);
-    return arrangement->polygon_plane && arrangement->polygon_flipped && geometry->planes &&
-           geometry->filters;
+    return take_facet_planes(arrangement, most) && arrangement->polygon_plane &&
+           arrangement->polygon_flipped && geometry->filters;
 }
 
 static bool make_planes(enf_arrangement *arrangement, int threads) {
@@ -138,9 +151,8 @@ static bool make_planes(enf_arrangement *arrangement, int threads) {
     geometry->points = mesh->points;
     geometry->point_count = (int32_t)mesh->point_count;
     maker.buckets = enf_array_new(mesh->polygon_count, sizeof *maker.buckets);
-    bool good = maker.buckets && reserve_planes(arrangement);
+    bool good = reserve_planes(arrangement) && maker.buckets;
     if (good) {
-        memcpy(geometry->planes, arrangement->tets.facet_corners, (size_t)facets * sizeof *geometry->planes);
         geometry->filter_first = facets;
         geometry->plane_count = geometry->filter_end = facets + (int32_t)mesh->polygon_count;
         enf_parallel_for(&crew, blocks, make_own_planes, &maker);

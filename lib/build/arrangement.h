@@ -20,8 +20,9 @@ typedef struct enf_arrangement {
     const enf_mesh *mesh;
     enf_tet_mesh tets;
 
-    /// Planes: first one per facet of the tetrahedra, then one per plane that polygons lie in (with filters),
-    /// then one per polygon corner (the edge that leaves it; the polygon lies behind it).
+    /// Planes: first one per facet of the tetrahedra (their corners, in one array with the rest), then one
+    /// per plane that polygons lie in (with filters), then one per polygon corner (the edge that leaves it;
+    /// the polygon lies behind it).
     enf_geometry geometry;
     int32_t edge_plane_first; ///< plane of mesh corner c: edge_plane_first + c
     int32_t *polygon_plane;   ///< per polygon

@@ -124,25 +124,23 @@ static bool make_sights(enf_complex *complex) {
 
 // ---------------------------------------------------------------------------------------------- all together
 
-/// What the arrangement does not need any more.
-static bool take_arrangement(enf_complex *complex, enf_arrangement *arrangement) {
-    const enf_tet_mesh *tets = &arrangement->tets;
+/// What the arrangement does not need any more, or (the planes) needs as long as they are here.
+static void take_arrangement(enf_complex *complex, enf_arrangement *arrangement) {
     complex->points = arrangement->geometry.points;
     complex->point_count = arrangement->geometry.point_count;
     complex->planes = arrangement->geometry.planes;
     complex->plane_count = arrangement->geometry.plane_count;
     arrangement->geometry.planes = NULL;
-    complex->tetrahedra = enf_array_new((size_t)tets->count, sizeof *complex->tetrahedra);
-    if (!complex->tetrahedra) return false;
-    memcpy(complex->tetrahedra, tets->corners, (size_t)tets->count * sizeof *complex->tetrahedra);
-    return true;
+    complex->tetrahedra = arrangement->tets.corners;
+    arrangement->tets.corners = NULL;
 }
 
 enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
                                enf_error *error) {
     (void)crew;
     renumber_cells(complex, arrangement);
-    bool good = list_facets(complex) && make_sights(complex) && take_arrangement(complex, arrangement);
+    bool good = list_facets(complex) && make_sights(complex);
+    take_arrangement(complex, arrangement);
     for (int i = 0; i < ENF_TIERS; i++) complex->predicates[i] += arrangement->geometry.decided[i];
     return good ? ENF_OK : enf_fail_memory(error, "the fine complex");
 }

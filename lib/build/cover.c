@@ -14,7 +14,7 @@ static overlap line_overlap(enf_settler *s, int32_t first, int32_t line) {
     int32_t h = first;
     do {
         int side =
-            enf_geometry_side(&s->space->geometry, s->space->halves[h].vertex, s->lines.first_plane + line);
+            enf_geometry_side(&s->space->geometry, s->space->halves[h].vertex, s->lines->first_plane + line);
         inside |= side < 0;
         outside |= side > 0;
         h = s->space->halves[h].next;
@@ -28,18 +28,18 @@ static overlap facet_overlap(enf_settler *s, int32_t facet) {
     int32_t first = s->space->facets[facet].first, h = first;
     uint32_t inside = 0, outside = 0;
     overlap result = WHOLE;
-    if (s->lines.wanted) {
+    if (s->lines->wanted) {
         do {
             const enf_line_sides *sides =
-                enf_polygon_lines_at(&s->lines, &s->space->geometry, halves[h].vertex);
+                enf_polygon_lines_at(s->lines, &s->space->geometry, halves[h].vertex);
             inside |= sides->inside;
             outside |= sides->outside;
             h = halves[h].next;
         } while (h != first);
-        if (inside != s->lines.wanted) return NONE;
+        if (inside != s->lines->wanted) return NONE;
         if (outside) result = PART;
     }
-    for (int32_t i = ENF_LINES_FEW; i < s->lines.count; i++) {
+    for (int32_t i = ENF_LINES_FEW; i < s->lines->count; i++) {
         overlap line = line_overlap(s, first, i);
         if (line == NONE) return NONE;
         if (line == PART) result = PART;
@@ -49,7 +49,7 @@ static overlap facet_overlap(enf_settler *s, int32_t facet) {
 
 static bool add_cover(enf_settler *s, int32_t facet, int32_t loop) {
     const enf_arrangement *arrangement = s->arrangement;
-    int32_t added = s->free_cover, polygon = s->lines.polygon;
+    int32_t added = s->free_cover, polygon = s->lines->polygon;
     if (added >= 0) {
         s->free_cover = s->covers[added].next;
     } else {
@@ -72,8 +72,8 @@ static bool clip_facet(enf_settler *s, int32_t facet, bool *some) {
     pool->corner_count = 0;
     enf_loop loop = enf_facet_loop(s->space, facet, pool);
     *some = true;
-    for (int32_t i = 0; i < s->lines.count && *some && !pool->failed; i++)
-        *some = enf_pool_keep(pool, &loop, s->lines.first_plane + i, -1);
+    for (int32_t i = 0; i < s->lines->count && *some && !pool->failed; i++)
+        *some = enf_pool_keep(pool, &loop, s->lines->first_plane + i, -1);
     if (!*some) pool->geometry.crossing_count = crossings;
     return !pool->failed && (!*some || enf_loops_append(&s->loops, pool->corners + loop.first, loop.count));
 }

@@ -13,6 +13,7 @@
 #include "base/hash.h"
 #include "base/sphere.h"
 #include "build/tet_order.h"
+#include "build/tetrahedra.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,17 +32,18 @@ typedef struct tetrahedron {
 typedef struct triangulation {
     const double *points;
     tetrahedron *tets;
-    uint32_t *seen; ///< in_hole or not_in_hole as of now; other values are of earlier points
+    uint32_t *seen; ///< in_hole, or one more: not in the hole; what is less is of earlier points
     size_t count, capacity, seen_capacity;
 
-    uint32_t in_hole, not_in_hole;
+    uint32_t in_hole;
     int32_t *hole; ///< tetrahedra
     size_t hole_count, hole_capacity;
     int32_t *rim; ///< faces of tetrahedra in the hole with none of them beyond
     size_t rim_count, rim_capacity;
     int32_t rim_points, rim_point[RIM_POINTS_MAX]; ///< the corners of a small rim
-    uint8_t *place; ///< of points, from infinity on: which corner of the rim they were last
-    int32_t waiting[RIM_POINTS_MAX][RIM_POINTS_MAX]; ///< faces; -1: none
+    uint8_t *place;                  ///< of points, from infinity on: which corner of the rim they were last
+    uint8_t rim_place[SMALL_RIM][3]; ///< those of its faces
+    int32_t at_edge[RIM_POINTS_MAX][RIM_POINTS_MAX]; ///< the new face from one corner of it to another
     int32_t *spare;                                  ///< tetrahedra that are none
     size_t spare_count, spare_capacity;
     int32_t last; ///< a tetrahedron at the last point
@@ -102,10 +104,19 @@ __attribute__((noinline)) static bool perturbed_sphere_holds(const triangulation
     return false;
 }
 
+/// Of a number that is not 0. Either is as likely, so it is asked in a way that compilers make no branch of.
+static inline bool is_negative(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits >> 63;
+}
+
 static inline bool sphere_holds(const triangulation *d, const int32_t corner[4], int32_t point) {
     const double *const at[4] = {point_at(d, corner[0]), point_at(d, corner[1]), point_at(d, corner[2]),
                                  point_at(d, corner[3])};
-    const int side = enf_corners_side_of_sphere(at, point_at(d, point));
+    double largest, determinant = enf_sphere_determinant(at, point_at(d, point), &largest);
+    if (enf_sphere_is_sure(determinant, largest)) return !is_negative(determinant);
+    const int side = enf_corners_side_of_sphere_exactly(at, point_at(d, point));
     return side > 0 || (side == 0 && perturbed_sphere_holds(d, corner, point));
 }
 
@@ -113,16 +124,11 @@ static bool is_finite(const int32_t corner[4]) {
     return (corner[0] | corner[1] | corner[2] | corner[3]) >= 0;
 }
 
-/// Which corner is the point (or at infinity)? One of them is.
-static int find_corner(const int32_t corner[4], int32_t point) {
-    return (corner[1] == point) + 2 * (corner[2] == point) + 3 * (corner[3] == point);
-}
-
 /// Must the tetrahedron go when the point comes? At infinity the sphere is the half-space beyond the hull
 /// and, in the hull's plane, the circle in which that meets the sphere of the tetrahedron inside.
 static inline bool is_in_conflict(const triangulation *d, int32_t t, int32_t point) {
     if (is_finite(d->tets[t].corner)) return sphere_holds(d, d->tets[t].corner, point);
-    const int infinity = find_corner(d->tets[t].corner, AT_INFINITY);
+    const int infinity = enf_tetrahedron_place(d->tets[t].corner, AT_INFINITY);
     const int side = side_of_face(d, d->tets[t].corner, infinity, point);
     return side > 0 || (side == 0 && sphere_holds(d, d->tets[d->tets[t].next[infinity] >> 2].corner, point));
 }
@@ -133,7 +139,8 @@ static inline bool is_in_conflict(const triangulation *d, int32_t t, int32_t poi
 /// tetrahedra cannot lead round in circles (H. Edelsbrunner, 1990).
 static int32_t find_conflict(const triangulation *d, int32_t point) {
     int32_t t = d->last;
-    if (!is_finite(d->tets[t].corner)) t = d->tets[t].next[find_corner(d->tets[t].corner, AT_INFINITY)] >> 2;
+    if (!is_finite(d->tets[t].corner))
+        t = d->tets[t].next[enf_tetrahedron_place(d->tets[t].corner, AT_INFINITY)] >> 2;
     for (int32_t came = -1;;) {
         int k = 0;
         for (; k < 4; k++) {
@@ -147,27 +154,33 @@ static int32_t find_conflict(const triangulation *d, int32_t point) {
     }
 }
 
-/// The tetrahedra in conflict, which are connected, and the faces around them. False without memory.
+/// The tetrahedra in conflict, which are connected, and the faces around them. What is found is put at the
+/// end of its list either way, and counted where it belongs there: processors can't guess where. False
+/// without memory.
 static bool dig_hole(triangulation *d, int32_t first, int32_t point) {
-    d->hole_count = d->rim_count = 0;
-    d->hole[d->hole_count++] = first;
-    d->seen[first] = d->in_hole;
-    for (size_t i = 0; i < d->hole_count; i++) {
-        if (!enf_array_reserve(d->hole, d->hole_capacity, d->hole_count + 4)) return false;
-        if (!enf_array_reserve(d->rim, d->rim_capacity, d->rim_count + 4)) return false;
+    const uint32_t in_hole = d->in_hole;
+    size_t hole_count = 1, rim_count = 0;
+    d->hole[0] = first;
+    d->seen[first] = in_hole;
+    for (size_t i = 0; i < hole_count; i++) {
+        if (!enf_array_reserve(d->hole, d->hole_capacity, hole_count + 5)) return false;
+        if (!enf_array_reserve(d->rim, d->rim_capacity, rim_count + 5)) return false;
         const int32_t t = d->hole[i];
         for (int k = 0; k < 4; k++) {
             const int32_t u = d->tets[t].next[k] >> 2;
-            if (d->seen[u] == d->in_hole) continue;
-            if (d->seen[u] != d->not_in_hole) {
+            uint32_t seen = d->seen[u];
+            if (seen < in_hole) {
                 const bool conflict = is_in_conflict(d, u, point);
-                d->seen[u] = conflict ? d->in_hole : d->not_in_hole;
-                if (conflict) d->hole[d->hole_count++] = u;
-                if (conflict) continue;
+                d->seen[u] = seen = in_hole + !conflict;
+                d->hole[hole_count] = u;
+                hole_count += conflict;
             }
-            d->rim[d->rim_count++] = 4 * t + k;
+            d->rim[rim_count] = 4 * t + k;
+            rim_count += seen - in_hole;
         }
     }
+    d->hole_count = hole_count;
+    d->rim_count = rim_count;
     return true;
 }
 
@@ -185,9 +198,12 @@ static void join_faces(triangulation *d, int32_t a, int32_t b) {
 }
 
 static int32_t take_slot(triangulation *d) {
-    if (d->spare_count > 0) return d->spare[--d->spare_count];
+    const size_t spare = d->spare_count > 0; // no branch, as above
+    const int32_t last = d->spare[d->spare_count - spare], slot = spare ? last : (int32_t)d->count;
     d->seen[d->count] = 0;
-    return (int32_t)d->count++;
+    d->spare_count -= spare;
+    d->count += !spare;
+    return slot;
 }
 
 /// The tetrahedron between a face of the rim and the point. Returns its number.
@@ -205,30 +221,29 @@ static int32_t add_tetrahedron(triangulation *d, int32_t face, int32_t point) {
 
 /// A number below RIM_POINTS_MAX for a corner of the rim.
 static int32_t place_of(triangulation *d, int32_t corner) {
-    uint8_t *place = &d->place[corner + 1]; // infinity is -1
-    if (*place >= d->rim_points || d->rim_point[*place] != corner) {
-        *place = (uint8_t)d->rim_points;
-        d->rim_point[d->rim_points++] = corner;
-    }
-    return *place;
+    const int32_t last = d->place[corner + 1]; // infinity is -1
+    const int32_t new = (last >= d->rim_points) | (d->rim_point[last] != corner);
+    const int32_t place = last + new *(d->rim_points - last);
+    d->place[corner + 1] = (uint8_t)place;
+    d->rim_point[place] = corner;
+    d->rim_points += new;
+    return place;
 }
 
-/// Each new face waits at its edge of the rim, (from, to), until the other comes, from `to` to `from`.
+/// Each new face is noted at its edge of the rim, (from, to), and finds the other from `to` to `from`.
 static void fill_small_hole(triangulation *d, int32_t point) {
     d->rim_points = 0;
     for (size_t i = 0; i < d->rim_count; i++) {
         const int32_t t = add_tetrahedron(d, d->rim[i], point), *corner = d->tets[t].corner;
-        const int32_t place[3] = {place_of(d, corner[0]), place_of(d, corner[1]), place_of(d, corner[2])};
-        for (int k = 0; k < 3; k++) {
-            const int32_t from = place[(k + 1) % 3], to = place[(k + 2) % 3];
-            int32_t *other = &d->waiting[to][from];
-            if (*other < 0) {
-                d->waiting[from][to] = 4 * t + k;
-            } else {
-                join_faces(d, 4 * t + k, *other);
-                *other = -1;
-            }
-        }
+        uint8_t *place = d->rim_place[i];
+        for (int k = 0; k < 3; k++) place[k] = (uint8_t)place_of(d, corner[k]);
+        for (int k = 0; k < 3; k++) d->at_edge[place[(k + 1) % 3]][place[(k + 2) % 3]] = 4 * t + k;
+        d->rim[i] = t;
+    }
+    for (size_t i = 0; i < d->rim_count; i++) {
+        const uint8_t *place = d->rim_place[i];
+        int32_t *next = d->tets[d->rim[i]].next;
+        for (int k = 0; k < 3; k++) next[k] = d->at_edge[place[(k + 2) % 3]][place[(k + 1) % 3]];
     }
 }
 
@@ -244,7 +259,8 @@ static void join_tetrahedron(triangulation *d, int32_t face) {
         for (int32_t next; (next = d->tets[u].next[leave]) >= 0;) {
             u = next >> 2;
             came = next & 3;
-            leave = 6 - came - find_corner(d->tets[u].corner, from) - find_corner(d->tets[u].corner, to);
+            leave = 6 - came - enf_tetrahedron_place(d->tets[u].corner, from) -
+                    enf_tetrahedron_place(d->tets[u].corner, to);
         }
         const int32_t other = -1 - d->tets[u].next[leave];
         join_faces(d, 4 * t + k, 4 * other + corner_places[leave][came]);
@@ -278,7 +294,6 @@ static enf_status fail_memory(enf_error *error) {
 static enf_status insert_point(triangulation *d, int32_t point, enf_error *error) {
     const int32_t first = find_conflict(d, point);
     d->in_hole += 2;
-    d->not_in_hole += 2;
     if (!dig_hole(d, first, point) || !prepare_filling(d)) return fail_memory(error);
     fill_hole(d, point);
     return ENF_OK;
@@ -345,7 +360,6 @@ static bool begin(triangulation *d, const int32_t first[4], size_t point_count) 
         !enf_array_reserve(d->hole, d->hole_capacity, 64))
         return false;
     memset(d->seen, 0, d->count * sizeof *d->seen);
-    memset(d->waiting, 0xff, sizeof d->waiting); // -1
     memcpy(d->tets[0].corner, first, sizeof d->tets->corner);
     for (int32_t k = 0; k < 4; k++) { // infinity in the place of corner k, and two others exchanged
         int32_t *corner = d->tets[k + 1].corner;
@@ -362,7 +376,6 @@ static bool begin(triangulation *d, const int32_t first[4], size_t point_count) 
         }
     }
     d->last = 0;
-    d->not_in_hole = 1;
     return true;
 }
 

@@ -49,9 +49,9 @@ static int32_t beyond(const enf_tet_mesh *tets, int32_t t, int k) {
 }
 
 static int place_of(const int32_t corner[4], int32_t point) {
-    int k = 0;
-    while (k < 4 && corner[k] != point) k++;
-    return k;
+    unsigned places = (unsigned)(corner[0] == point) | (unsigned)(corner[1] == point) << 1 |
+                      (unsigned)(corner[2] == point) << 2 | (unsigned)(corner[3] == point) << 3 | 1u << 4;
+    return __builtin_ctz(places);
 }
 
 /// The orientation of a tetrahedron with another point at one corner.
@@ -152,10 +152,9 @@ static void put_new(const flipper *f, patch *p, int32_t t, int32_t replaced, int
 }
 
 static bool is_old(const patch *p, int32_t t) {
-    for (int i = 0; i < p->old_count; i++) {
-        if (p->old[i] == t) return true;
-    }
-    return false;
+    bool old = false;
+    for (int i = 0; i < p->old_count; i++) old |= p->old[i] == t;
+    return old;
 }
 
 /// Facets of the old tetrahedra: those around the patch, and those that go, each once.
@@ -166,7 +165,7 @@ static void list_facets(const flipper *f, const patch *p, facet_list *around, fa
         for (int k = 0; k < 4; k++) {
             int32_t facet = tets->facets[p->old[i]][k];
             const int32_t *sides = tets->facet_sides[facet];
-            if (!is_old(p, sides[0]) || !is_old(p, sides[1])) {
+            if (!is_old(p, sides[0]) | !is_old(p, sides[1])) {
                 around->facet[around->count++] = facet;
             } else if (sides[0] == p->old[i]) {
                 within->facet[within->count++] = facet;

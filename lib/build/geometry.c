@@ -340,7 +340,7 @@ static int decide_point(enf_geometry *geometry, const double *x, int32_t plane,
 static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane,
                                 const enf_plane_filter *filter) {
     const int32_t *defined = geometry->planes[plane];
-    if (point == defined[0] || point == defined[1] || point == defined[2]) return 0;
+    if ((point == defined[0]) | (point == defined[1]) | (point == defined[2])) return 0;
     const double *x = geometry->points + 3 * (size_t)point, *p = geometry->points + 3 * (size_t)defined[0];
     if (filter->axis >= 0) { // a comparison
         geometry->decided[ENF_TIER_FILTER]++;
@@ -357,7 +357,7 @@ static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t p
     }
     if (fabs(value) > 6 * U * magnitude + 1.001 * filter->normal_error * reach) {
         geometry->decided[ENF_TIER_FILTER]++;
-        return value > 0 ? 1 : -1;
+        return 2 * (value > 0) - 1;
     }
     return decide_point(geometry, x, plane, filter, value, magnitude);
 }
@@ -489,7 +489,8 @@ static int decide_crossing(enf_geometry *geometry, enf_crossing *crossing, int32
 
 static inline int side_of_crossing(enf_geometry *geometry, enf_crossing *crossing, int32_t plane,
                                    const enf_plane_filter *filter) {
-    if (plane == crossing->plane[0] || plane == crossing->plane[1] || plane == crossing->plane[2]) return 0;
+    if ((plane == crossing->plane[0]) | (plane == crossing->plane[1]) | (plane == crossing->plane[2]))
+        return 0;
     double value = filter->offset * crossing->weight, magnitude = fabs(value), reach = 0;
     for (int i = 0; i < 3; i++) {
         double term = filter->normal[i] * crossing->at[i];
@@ -503,7 +504,7 @@ static inline int side_of_crossing(enf_geometry *geometry, enf_crossing *crossin
                    fabs(filter->offset) * crossing->weight_error;
     if (fabs(value) > 1.01 * error) {
         geometry->decided[ENF_TIER_FILTER]++;
-        return value > 0 ? crossing->weight_sign : -crossing->weight_sign;
+        return (2 * (value > 0) - 1) * crossing->weight_sign;
     }
     return decide_crossing(geometry, crossing, plane, filter, value, magnitude, error);
 }

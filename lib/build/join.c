@@ -17,9 +17,7 @@
 #define OPENING_MIN 0.25
 
 static int32_t apex(const enf_tet_mesh *tets, int32_t t, int32_t facet) {
-    int k = 0;
-    while (tets->facets[t][k] != facet) k++;
-    return tets->corners[t][k];
+    return tets->corners[t][enf_tetrahedron_place(tets->facets[t], facet)]; // both have four numbers
 }
 
 /// For each facet between two tetrahedra of the part: a bit for each of its three edges at which the two
@@ -49,9 +47,8 @@ static bool is_hopeless(const enf_subdivision *s, const enf_joiner *joiner, int3
     int32_t t =
         tets->facet_sides[source][0] >= 0 ? tets->facet_sides[source][0] : tets->facet_sides[source][1];
     for (int i = 0; i < 3; i++) {
-        int opposite = 0;
         if (!(joiner->reflex[source] >> i & 1)) continue;
-        while (tets->corners[t][opposite] != tets->facet_corners[source][(i + 2) % 3]) opposite++;
+        int opposite = enf_tetrahedron_place(tets->corners[t], tets->facet_corners[source][(i + 2) % 3]);
         reflex_plane[count++] = tets->facets[t][opposite];
     }
     do {
@@ -66,10 +63,10 @@ static bool is_hopeless(const enf_subdivision *s, const enf_joiner *joiner, int3
 /// The facets at an edge that belong to one of two cells and not to both: a half of each, or -1.
 static void find_beside(const enf_subdivision *s, int32_t edge, const int32_t cell[2], int32_t beside[2]) {
     beside[0] = beside[1] = -1;
-    for (int32_t h = s->edge_half[edge]; h >= 0; h = s->halves[h].radial) {
+    for (int32_t h = s->edge_half[edge]; h > 0; h = s->halves[h].radial) {
         const enf_share *facet = &s->facets[s->halves[h].facet];
-        bool first = facet->cell[0] == cell[0] || facet->cell[1] == cell[0],
-             second = facet->cell[0] == cell[1] || facet->cell[1] == cell[1];
+        bool first = (facet->cell[0] == cell[0]) | (facet->cell[1] == cell[0]),
+             second = (facet->cell[0] == cell[1]) | (facet->cell[1] == cell[1]);
         if (first != second) beside[second] = h;
     }
 }

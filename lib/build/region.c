@@ -88,7 +88,7 @@ static bool join_cells(const enf_complex *complex, double crack, const bool *gap
         if (complex->piece_cover[p] != ENF_PIECE_OPEN) {
             for (int side = 0; side < 2; side++)
                 if (cell[side] >= 0) has[cell[side]] |= WALL;
-        } else if (inner && enf_sets_find(parent, cell[0]) == enf_sets_find(parent, cell[1])) {
+        } else if (inner && enf_sets_joined(parent, cell[0], cell[1])) {
             continue; // joined already; whether this is a crack does not matter
         } else if (at_gap || (crack > 0 && is_crack(complex, p, crack))) {
             if (!enf_array_reserve(cracks->pieces, cracks->capacity, cracks->count + 1)) return false;

@@ -12,8 +12,9 @@
 // end
 
 bool enf_settler_start(enf_settler *s, const enf_arrangement *arrangement, enf_subdivision *space,
-                       enf_yield *yield, uint8_t *reflex) {
+                       enf_yield *yield, enf_polygon_lines *lines, uint8_t *reflex) {
     s->arrangement = arrangement;
+    s->lines = lines;
     s->space = space;
     s->yield = yield;
     s->join = !arrangement->plain;
@@ -31,7 +32,6 @@ void enf_settler_free(enf_settler *s) {
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     enf_loops_free(&s->loops);
     enf_joiner_free(&s->joiner);
-    enf_polygon_lines_free(&s->lines);
     enf_pool_free(&s->pool);
     memset(s, 0, sizeof *s);
 }
@@ -98,7 +98,7 @@ static bool cover_inner(enf_settler *s, const enf_cut_cell *cut) {
     }
     for (size_t i = 0; i < cut->hit_count; i++) {
         const enf_hit *hit = &cut->hits[i];
-        enf_polygon_lines_take(&s->lines, s->arrangement, hit->polygon, hit->lines);
+        enf_polygon_lines_take(s->lines, s->arrangement, hit->polygon, hit->lines);
         for (int32_t k = s->inner_of[-1 - hit->source - cut->first_node]; k >= 0; k = s->next_inner[k]) {
             if (!enf_cover_facet(s, s->inner[k])) return false;
         }
@@ -111,7 +111,7 @@ static bool cover_from_hits(enf_settler *s, int32_t facet) {
     const enf_arrangement *arrangement = s->arrangement;
     int32_t source = s->space->facets[facet].source;
     for (int32_t k = arrangement->hit_first[source]; k < arrangement->hit_first[source + 1]; k++) {
-        enf_polygon_lines_take(&s->lines, arrangement, arrangement->hits[k].polygon,
+        enf_polygon_lines_take(s->lines, arrangement, arrangement->hits[k].polygon,
                                arrangement->hits[k].lines);
         if (!enf_cover_facet(s, facet)) return false;
     }
@@ -178,7 +178,7 @@ static bool close_cell(enf_settler *s, int32_t cell) {
 
 static bool reserve_lines(enf_settler *s) {
     const enf_geometry *geometry = &s->space->geometry;
-    return enf_polygon_lines_reserve(&s->lines,
+    return enf_polygon_lines_reserve(s->lines,
                                      (size_t)geometry->point_count + (size_t)geometry->crossing_count);
 }
 

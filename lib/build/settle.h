@@ -25,9 +25,9 @@ typedef struct enf_settler {
     enf_subdivision *space;
     enf_yield *yield; ///< where settled facets go
     enf_joiner joiner;
-    bool join; ///< cells may be joined
-    enf_polygon_lines lines;
-    enf_pool pool; ///< has the space's geometry while it clips
+    bool join;                ///< cells may be joined
+    enf_polygon_lines *lines; ///< borrowed: nobody counts on what they held before
+    enf_pool pool;            ///< has the space's geometry while it clips
 
     enf_cover *covers;
     size_t cover_count, cover_capacity;
@@ -59,10 +59,10 @@ typedef struct enf_cut_cell {
 } enf_cut_cell;
 
 /// Begins with a part whose tetrahedra are in `space`; a settler that has been used (or is all zero) is used
-/// again. Facets of the tetrahedra are covered by arrangement->hits; `reflex`: see enf_joiner_start. False
-/// without memory; free it in any case.
+/// again. Facets of the tetrahedra are covered by arrangement->hits; `lines` are borrowed and taken anew each
+/// time; `reflex`: see enf_joiner_start. False without memory; free it in any case.
 bool enf_settler_start(enf_settler *settler, const enf_arrangement *arrangement, enf_subdivision *space,
-                       enf_yield *yield, uint8_t *reflex);
+                       enf_yield *yield, enf_polygon_lines *lines, uint8_t *reflex);
 
 /// Settles the facets between tetrahedra that stay as they are. False without memory.
 bool enf_settler_settle_still(enf_settler *settler);

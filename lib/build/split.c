@@ -390,7 +390,7 @@ static void cut_part(void *user, int32_t index, int thread) {
                 enf_subdivision_start(&c->space, &all->arrangement->geometry, &all->arrangement->tets,
                                       &c->part, all->parts.cuts[index]) &&
                 enf_polygon_lines_reserve(&c->lines, all->arrangement->mesh->point_count) &&
-                enf_settler_start(&c->settler, all->arrangement, &c->space, yield, all->reflex) &&
+                enf_settler_start(&c->settler, all->arrangement, &c->space, yield, &c->lines, all->reflex) &&
                 enf_settler_settle_still(&c->settler);
     if (good) {
         if (c->settler.join) join_tetrahedra(c);
@@ -476,6 +476,7 @@ enf_status enf_complex_split(enf_complex *complex, enf_arrangement *arrangement,
     const enf_crew watched = {.threads = crew->threads, .watch = watch_half, .user = &half};
     all.crew = &watched;
     bool stopped, good = enf_candidates_find(&all.candidates, arrangement, &watched, &stopped);
+    enf_tet_mesh_unlist(&arrangement->tets);
     half = (half_watch){.crew = crew, .begun = FLOOD_SHARE, .share = 1 - FLOOD_SHARE};
     good = good && split_parts(&all, complex);
     stopped = stopped || atomic_load(&all.stopped);

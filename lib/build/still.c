@@ -104,6 +104,15 @@ static void set_counts(enf_yield *yield, place end) {
     complex->facet_piece[end.facet] = end.facet;
 }
 
+/// The parts' own facets follow: of each that is in a part there will be at least one, and cuts make more. As
+/// many as are usual, and some: memory that nothing is written to takes no time, but arrays that grow do.
+static bool reserve(enf_yield *yield, const enf_parts *parts, place end) {
+    size_t facets = (size_t)end.facet + (size_t)parts->facet_first[parts->count], cuts = 0;
+    for (int32_t i = 0; i < parts->count; i++) cuts += parts->cuts[i];
+    return enf_yield_reserve(yield, facets + 2 * cuts, 3 * facets + 7 * cuts,
+                             (size_t)end.cover + (facets - (size_t)end.facet) / 4 + cuts + cuts / 4);
+}
+
 bool enf_still_emit(enf_yield *yield, const enf_arrangement *arrangement, const enf_parts *parts,
                     int threads) {
     const enf_crew crew = {.threads = threads};
@@ -114,9 +123,7 @@ bool enf_still_emit(enf_yield *yield, const enf_arrangement *arrangement, const 
     enf_parallel_for(&crew, blocks, count_block, &all);
     add_up(all.places, blocks);
     place end = all.places[blocks];
-    // The parts' own facets follow: of each that is in a part there will be at least one.
-    size_t more = (size_t)parts->facet_first[parts->count];
-    bool good = enf_yield_reserve(yield, (size_t)end.facet + more, (size_t)end.cover + more / 4);
+    bool good = reserve(yield, parts, end);
     if (good) {
         enf_parallel_for(&crew, blocks, fill_block, &all);
         set_counts(yield, end);

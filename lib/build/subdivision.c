@@ -46,24 +46,37 @@ static int32_t new_edge(enf_subdivision *s) {
         if (!enf_array_reserve(s->edge_half, s->edge_capacity, s->edge_count + 1)) return -1;
         edge = (int32_t)s->edge_count++;
     }
-    s->edge_half[edge] = -1;
+    s->edge_half[edge] = 0;
     return edge;
 }
 
-/// Takes a facet's halves out of the lists at their edges.
+/// Puts a half at the head of the list at its edge.
+static void list_half(enf_subdivision *s, int32_t h) {
+    enf_half *half = &s->halves[h];
+    int32_t *head = &s->edge_half[half->edge];
+    half->radial = *head;
+    half->before = 0;
+    s->halves[*head].before = h;
+    *head = h;
+}
+
+/// Takes a facet's halves out of the lists at their edges. Without branches: where in them they are is
+/// chance.
 static void remove_halves(enf_subdivision *s, int32_t first) {
-    int32_t h = first, last;
+    enf_half *halves = s->halves;
+    int32_t h = first, last, free_edge = s->free_edge;
     do {
-        int32_t edge = s->halves[h].edge, *link = &s->edge_half[edge];
-        while (*link != h) link = &s->halves[*link].radial;
-        *link = s->halves[h].radial;
-        if (s->edge_half[edge] < 0) {
-            s->edge_half[edge] = s->free_edge;
-            s->free_edge = edge;
-        }
+        int32_t edge = halves[h].edge, before = halves[h].before, after = halves[h].radial;
+        int32_t is_first = -(before == 0), is_only = -((before | after) == 0); // all bits or none
+        halves[after].before = before;
+        halves[before].radial = after;
+        int32_t head = (s->edge_half[edge] & ~is_first) | (after & is_first);
+        s->edge_half[edge] = (head & ~is_only) | (free_edge & is_only);
+        free_edge = (free_edge & ~is_only) | (edge & is_only);
         last = h;
-        h = s->halves[h].next;
+        h = halves[h].next;
     } while (h != first);
+    s->free_edge = free_edge;
     s->halves[last].next = s->free_half;
     s->free_half = first;
 }
@@ -84,8 +97,7 @@ void enf_subdivision_triangle(const enf_tet_mesh *tets, int32_t facet, int32_t c
     for (int i = 0; i < 3; i++) {
         // The edge to the next corner lies on the face opposite the third one.
         int32_t third = tets->facet_corners[facet][(i + 2) % 3];
-        int opposite = 0;
-        while (tets->corners[t][opposite] != third) opposite++;
+        int opposite = enf_tetrahedron_place(tets->corners[t], third);
         corner[i] = tets->facet_corners[facet][i];
         edge_plane[i] = tets->facets[t][opposite];
     }
@@ -128,24 +140,23 @@ static void pair_list(enf_subdivision *s, int32_t first, int32_t low) {
         if (high->mark != s->pairing_mark) {
             high->mark = s->pairing_mark;
             high->edge = (int32_t)s->edge_count++;
-            s->edge_half[high->edge] = -1;
+            s->edge_half[high->edge] = 0;
         }
         half->edge = high->edge;
-        half->radial = s->edge_half[half->edge];
-        s->edge_half[half->edge] = h;
+        list_half(s, h);
     }
 }
 
 /// Gives halves between the same two vertices the same edge. Halves are first listed by their lower vertex
 /// (through `radial`), then list by list.
 static void pair_halves(enf_subdivision *s) {
-    for (size_t h = s->half_count; h-- > 0;) {
+    for (size_t h = s->half_count; h-- > 1;) {
         int32_t from = s->halves[h].vertex, to = s->halves[s->halves[h].next].vertex;
         struct enf_pairing *low = &s->pairing[from < to ? from : to];
         s->halves[h].radial = low->half;
         low->half = (int32_t)h;
     }
-    for (size_t h = 0; h < s->half_count; h++) {
+    for (size_t h = 1; h < s->half_count; h++) {
         int32_t from = s->halves[h].vertex, to = s->halves[s->halves[h].next].vertex;
         int32_t low = from < to ? from : to, first = s->pairing[low].half;
         s->pairing[low].half = -1;
@@ -192,7 +203,8 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
     size_t points = (size_t)geometry->point_count;
     take_geometry(s, geometry);
     if (!s->geometry.kept) s->geometry.kept = enf_array_zeroed(1, sizeof *s->geometry.kept);
-    s->half_count = s->facet_count = s->edge_count = s->node_count = 0;
+    s->facet_count = s->edge_count = s->node_count = 0;
+    s->half_count = 1;
     s->free_half = s->free_facet = s->free_edge = -1;
     s->cell_count = count;
     s->tetrahedron_count = part->tetrahedron_count;
@@ -261,11 +273,10 @@ int enf_subdivision_crosses(enf_subdivision *s, int32_t cell) {
             int32_t after = s->halves[h].next, to = s->halves[after].vertex;
             int sign_to = enf_subdivision_sign(s, to);
             if (sign * sign_to < 0 && !note_cut_edge(s, h, from, to)) return -1;
-            if (sign == 0) {
-                beside->along |= sign_to == 0;
-                if (!enf_array_reserve(s->touching, s->touching_capacity, s->touching_count + 1)) return -1;
-                s->touching[s->touching_count++] = from;
-            }
+            if (!enf_array_reserve(s->touching, s->touching_capacity, s->touching_count + 1)) return -1;
+            beside->along |= (sign == 0) & (sign_to == 0);
+            s->touching[s->touching_count] = from; // counted where it belongs there: nobody can guess
+            s->touching_count += sign == 0;
             h = after;
             from = to;
             sign = sign_to;
@@ -306,8 +317,8 @@ void enf_subdivision_leave(enf_subdivision *s) {
 static bool split_edge(enf_subdivision *s, int32_t edge, int32_t from, int32_t vertex) {
     int32_t at = s->edge_half[edge], other = new_edge(s);
     if (other < 0) return false;
-    s->edge_half[edge] = -1;
-    while (at >= 0) {
+    s->edge_half[edge] = 0;
+    while (at > 0) {
         int32_t added = new_half(s);
         if (added < 0) return false;
         enf_half *half = &s->halves[at], *second = &s->halves[added];
@@ -318,10 +329,8 @@ static bool split_edge(enf_subdivision *s, int32_t edge, int32_t from, int32_t v
         // `edge` stays with the end it came from.
         half->edge = half->vertex == from ? edge : other;
         second->edge = half->vertex == from ? other : edge;
-        half->radial = s->edge_half[half->edge];
-        s->edge_half[half->edge] = at;
-        second->radial = s->edge_half[second->edge];
-        s->edge_half[second->edge] = added;
+        list_half(s, at);
+        list_half(s, added);
         at = following;
     }
     return true;
@@ -350,8 +359,8 @@ static int32_t split_facet(enf_subdivision *s, int32_t f, int32_t into, int32_t 
     int32_t before = out; // of the part behind
     while (halves[before].next != into) before = halves[before].next;
     halves[before].next = behind;
-    halves[behind] = (enf_half){halves[into].vertex, out, edge, front, s->plane, f};
-    halves[front] = (enf_half){halves[out].vertex, into, edge, -1, s->plane, g};
+    halves[behind] = (enf_half){halves[into].vertex, out, edge, front, 0, s->plane, f};
+    halves[front] = (enf_half){halves[out].vertex, into, edge, 0, behind, s->plane, g};
     s->edge_half[edge] = behind;
     s->facets[g] = s->facets[f];
     s->facets[f].first = behind;
@@ -450,10 +459,9 @@ static bool add_cut_facet(enf_subdivision *s, int32_t node, int32_t cell, int32_
         s->halves[half] = (enf_half){.vertex = part->from,
                                      .next = first,
                                      .edge = part->edge,
-                                     .radial = s->edge_half[part->edge],
                                      .edge_plane = part->edge_plane,
                                      .facet = f};
-        s->edge_half[part->edge] = half;
+        list_half(s, half);
         if (last >= 0) s->halves[last].next = half;
         if (first < 0) first = s->halves[half].next = half;
         last = half;

@@ -15,7 +15,8 @@ typedef struct enf_half {
     int32_t vertex; ///< where it starts
     int32_t next;   ///< around the facet
     int32_t edge;
-    int32_t radial;     ///< the next half at the same edge; -1: the last
+    int32_t radial;     ///< the next half at the same edge; 0: the last
+    int32_t before;     ///< the one whose next this is; 0: the first
     int32_t edge_plane; ///< holds the edge; never parallel to the facet. Collinear halves have the same one
     int32_t facet;
 } enf_half;
@@ -55,12 +56,12 @@ typedef struct enf_beside {
 typedef struct enf_subdivision {
     enf_geometry geometry; ///< points, planes and crossings; the vertices
 
-    enf_half *halves;
+    enf_half *halves; ///< number 0 is none: it is written to where one would have to be told from it
     size_t half_count, half_capacity;
     enf_share *facets;
     size_t facet_count, facet_capacity;
     int32_t free_half, free_facet, free_edge; ///< lists of what can be used again; -1: none
-    int32_t *edge_half;                       ///< the first half at each edge
+    int32_t *edge_half;                       ///< the first half at each edge; 0: none
     int32_t *edge_slot;                       ///< scratch: where an edge is in `cut_edges`
     size_t edge_count, edge_capacity, slot_capacity;
 

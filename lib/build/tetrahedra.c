@@ -6,14 +6,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+void enf_tet_mesh_unlist(enf_tet_mesh *mesh) {
+    free(mesh->slot_begin);
+    free(mesh->slots);
+    mesh->slot_begin = NULL;
+    mesh->slots = NULL;
+}
+
 void enf_tet_mesh_free(enf_tet_mesh *mesh) {
+    enf_tet_mesh_unlist(mesh);
     free(mesh->corners);
     free(mesh->facets);
     free(mesh->facet_corners);
     free(mesh->facet_sides);
     free(mesh->point_tetrahedron);
-    free(mesh->slot_begin);
-    free(mesh->slots);
     memset(mesh, 0, sizeof *mesh);
 }
 

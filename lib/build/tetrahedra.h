@@ -29,6 +29,11 @@ void enf_tet_mesh_free(enf_tet_mesh *mesh);
 enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t count, int32_t point_count,
                              enf_error *error);
 
+/// Which corner is the point? One of them is.
+static inline int enf_tetrahedron_place(const int32_t corner[4], int32_t point) {
+    return (corner[1] == point) + 2 * (corner[2] == point) + 3 * (corner[3] == point);
+}
+
 /// The three corners other than number `opposite`, ascending. Returns the side of their plane (1 in front, 0
 /// behind) on which the fourth corner of a positively oriented tetrahedron lies.
 int enf_tetrahedron_face(const int32_t tetrahedron[4], int opposite, int32_t face[3]);
@@ -36,6 +41,9 @@ int enf_tetrahedron_face(const int32_t tetrahedron[4], int opposite, int32_t fac
 /// Lists facets by their corners that have been given others. (Where the old ones led, they are not found any
 /// more.) False without memory.
 bool enf_tet_mesh_list(enf_tet_mesh *mesh, const int32_t *facets, size_t count);
+
+/// Gives back the memory of the lists: no facet can be found by its corners any more.
+void enf_tet_mesh_unlist(enf_tet_mesh *mesh);
 
 /// The facet with these three corners, in any order, or -1.
 int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c);

@@ -32,9 +32,9 @@ static bool reserve(enf_yield *yield, size_t facets, size_t covers, size_t piece
            enf_array_reserve(complex->piece_cover, yield->piece_cover_capacity, pieces);
 }
 
-bool enf_yield_reserve(enf_yield *yield, size_t facets, size_t covers) {
+bool enf_yield_reserve(enf_yield *yield, size_t facets, size_t corners, size_t covers) {
     enf_complex *complex = &yield->complex;
-    return reserve(yield, facets, covers, facets) && reserve_loops(&complex->facets, facets, 3 * facets) &&
+    return reserve(yield, facets, covers, facets) && reserve_loops(&complex->facets, facets, corners) &&
            reserve_loops(&complex->covers, covers, 0) && reserve_loops(&complex->pieces, facets, 0);
 }
 
@@ -47,11 +47,13 @@ static enf_corner *own_corners(const enf_yield *yield, const enf_loops *loops, s
     return loops->corners + still;
 }
 
+/// Points mark the number before the first, so that there is nothing to guess.
 static void mark_vertices(const enf_yield *yield, const enf_loops *loops, int32_t points, int32_t *number) {
     size_t count;
     const enf_corner *corners = own_corners(yield, loops, &count);
     for (size_t i = 0; i < count; i++) {
-        if (corners[i].vertex >= points) number[corners[i].vertex - points] = 1;
+        int32_t crossing = corners[i].vertex - points;
+        number[crossing | -(crossing < 0)] = 1;
     }
 }
 
@@ -60,7 +62,8 @@ static void renumber_vertices(const enf_yield *yield, const enf_loops *loops, in
     size_t count;
     enf_corner *corners = own_corners(yield, loops, &count);
     for (size_t i = 0; i < count; i++) {
-        if (corners[i].vertex >= points) corners[i].vertex = points + number[corners[i].vertex - points];
+        int32_t vertex = corners[i].vertex, crossing = vertex - points, is_point = -(crossing < 0);
+        corners[i].vertex = (vertex & is_point) | ((points + number[crossing | is_point]) & ~is_point);
     }
 }
 
@@ -69,8 +72,9 @@ static bool take_vertices(enf_yield *yield, enf_geometry *geometry) {
     enf_complex *complex = &yield->complex;
     const enf_loops *loops[] = {&complex->facets, &complex->covers, &complex->pieces};
     int32_t points = geometry->point_count, made = geometry->crossing_count, count = 0;
-    int32_t *number = enf_array_zeroed((size_t)made, sizeof *number);
-    if (!number) return false;
+    int32_t *numbers = enf_array_zeroed((size_t)made + 1, sizeof *numbers);
+    if (!numbers) return false;
+    int32_t *number = numbers + 1;
     for (int i = 0; i < 3; i++) mark_vertices(yield, loops[i], points, number);
     for (int32_t i = 0; i < made; i++) number[i] = number[i] ? count++ : -1;
     complex->vertex_count = count;
@@ -84,7 +88,7 @@ static bool take_vertices(enf_yield *yield, enf_geometry *geometry) {
         enf_geometry_position(geometry, points + i, complex->vertex_position[number[i]]);
     }
     for (int i = 0; good && i < 3; i++) renumber_vertices(yield, loops[i], points, number);
-    free(number);
+    free(numbers);
     return good;
 }
 
