@@ -236,6 +236,21 @@ static void spawn_points_follow_into_the_grid(void **state) {
     enf_soup_free(&soup);
 }
 
+static void zeros_come_back_without_a_sign(void **state) {
+    (void)state;
+    enf_frame frame = {.step = 0.5, .axis = {2, 0, 1}, .sign = {-1, 1, -1}, .handedness = -1};
+    for (int turned = 0; turned < 2; turned++) {
+        frame.is_turned = turned;
+        for (int a = 0; a < 3 && turned; a++) frame.turn[a][(a + 1) % 3] = -1;
+        for (int signs = 0; signs < 8; signs++) {
+            double at[3];
+            for (int a = 0; a < 3; a++) at[a] = signs >> a & 1 ? -0.0 : 0.0;
+            enf_frame_to_world(&frame, at, at);
+            for (int a = 0; a < 3; a++) assert_false(signbit(at[a]));
+        }
+    }
+}
+
 // ---- real worlds
 
 static void quake_levels_come_through(void **state) {
@@ -295,6 +310,7 @@ int main(void) {
         cmocka_unit_test(worlds_with_symmetric_marginals_get_a_canonical_frame_too),
         cmocka_unit_test(symmetric_points_with_unsymmetric_polygons_get_a_canonical_frame_too),
         cmocka_unit_test(spawn_points_follow_into_the_grid),
+        cmocka_unit_test(zeros_come_back_without_a_sign),
         cmocka_unit_test(quake_levels_come_through),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

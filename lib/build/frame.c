@@ -202,9 +202,10 @@ void enf_frame_direction_to_world(const enf_frame *frame, const double grid[3], 
     double at[3] = {grid[0], grid[1], grid[2]}, turned[3];
     for (int a = 0; a < 3; a++) turned[frame->axis[a]] = frame->sign[a] * at[a];
     for (int a = 0; a < 3; a++)
-        world[a] = frame->is_turned ? frame->turn[0][a] * turned[0] + frame->turn[1][a] * turned[1] +
-                                          frame->turn[2][a] * turned[2]
-                                    : turned[a];
+        world[a] = (frame->is_turned ? frame->turn[0][a] * turned[0] + frame->turn[1][a] * turned[1] +
+                                           frame->turn[2][a] * turned[2]
+                                     : turned[a]) +
+                   0.0; // -0 becomes 0: the smaller of the two is the compiler's choice
 }
 
 void enf_frame_to_world(const enf_frame *frame, const double grid[3], double world[3]) {
