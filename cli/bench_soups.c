@@ -10,9 +10,16 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { BOUND_POLYGONS = 600, CHECK_TIMES = 5, POINTS = 200 };
+enum { BOUND_POLYGONS = 600, CHECK_TIMES = 5, POINTS = 200, RUNS_MAX = 99 };
+
+typedef struct settings {
+    const char *name; ///< of the only soup, or null
+    double limit, weld, megabytes;
+    int runs;
+} settings;
 
 /// What a child is told, and what it says.
 typedef struct row {
@@ -120,17 +127,53 @@ static bool print_row(const row *row, const cli_child *child) {
 
 // ---------------------------------------------------------------------------------------------- running
 
-static enf_status run_soup(row *row, uint64_t bytes, bool *fine, enf_error *error) {
+/// What came of a soup once.
+typedef struct outcome {
+    enf_stress_result result;
     cli_child child;
-    row->crossings = -1;
-    enf_status status = ENF_OK;
-    if (row->soup->is_generic) status = cli_child_run(count_crossings, row, 60, 0, &child, error);
-    if (!status) status = cli_child_run(compile_soup, row, row->limit, bytes, &child, error);
-    if (!status) *fine = print_row(row, &child);
-    return status;
+} outcome;
+
+/// Time to cells, or all of it where it did not get that far.
+static double seconds_of(const outcome *outcome) {
+    return outcome->result.seconds > 0 ? outcome->result.cell_seconds : outcome->child.cpu_seconds;
 }
 
-static int run_soups(const char *name, double limit, double weld, double megabytes) {
+static int compare_outcomes(const void *a, const void *b) {
+    double x = seconds_of(a), y = seconds_of(b);
+    return (x > y) - (x < y);
+}
+
+static bool is_fine(const outcome *outcome) {
+    return !outcome->child.signal && outcome->result.outcome == ENF_STRESS_FINE;
+}
+
+/// Several times; the row is of the median time to cells, or of the first run that was not fine.
+static enf_status run_soup(row *row, const settings *settings, bool *fine, enf_error *error) {
+    outcome outcomes[RUNS_MAX];
+    row->crossings = -1;
+    enf_status status = ENF_OK;
+    int runs = 0;
+    if (row->soup->is_generic) status = cli_child_run(count_crossings, row, 60, 0, &outcomes[0].child, error);
+    while (!status && runs < settings->runs) {
+        memset(&row->result, 0, sizeof row->result);
+        status = cli_child_run(compile_soup, row, row->limit, (uint64_t)(settings->megabytes * 1e6),
+                               &outcomes[runs].child, error);
+        outcomes[runs++].result = row->result;
+        if (!is_fine(&outcomes[runs - 1])) break;
+    }
+    if (status) return status;
+    const outcome *shown = &outcomes[runs - 1];
+    if (is_fine(shown)) {
+        qsort(outcomes, (size_t)runs, sizeof *outcomes, compare_outcomes);
+        shown = &outcomes[runs / 2];
+    }
+    row->result = shown->result;
+    *fine = print_row(row, &shown->child);
+    return ENF_OK;
+}
+
+static int run_soups(const settings *settings) {
+    const char *name = settings->name;
     enf_error error = {0};
     enf_status status = ENF_OK;
     bool found = false, all_fine = true;
@@ -145,9 +188,9 @@ static int run_soups(const char *name, double limit, double weld, double megabyt
         if (name && strcmp(name, soup->name) != 0) continue;
         bool fine = false;
         memset(row, 0, sizeof *row);
-        row->soup = soup, row->limit = limit, row->weld = weld;
+        row->soup = soup, row->limit = settings->limit, row->weld = settings->weld;
         found = true;
-        status = run_soup(row, (uint64_t)(megabytes * 1e6), &fine, &error);
+        status = run_soup(row, settings, &fine, &error);
         all_fine = all_fine && fine;
     }
     cli_shared_free(row, sizeof *row);
@@ -160,19 +203,20 @@ static int run_soups(const char *name, double limit, double weld, double megabyt
 }
 
 int cli_bench_soups(int argc, char **argv) {
-    const char *name = NULL;
-    double limit = 60, weld = -1, megabytes = 4096;
+    settings settings = {.limit = 60, .weld = -1, .megabytes = 4096, .runs = 1};
     cli_option options[] = {
-        {"--soup", 0, CLI_TEXT, &name, "NAME", "only this one", NULL, false},
-        {"--limit", 0, CLI_LENGTH, &limit, "SECONDS",
+        {"--soup", 0, CLI_TEXT, &settings.name, "NAME", "only this one", NULL, false},
+        {"--limit", 0, CLI_LENGTH, &settings.limit, "SECONDS",
          "CPU seconds for each; default 60 (and five times as long for check)", NULL, false},
-        {"--memory", 0, CLI_LENGTH, &megabytes, "MB", "address space for each; default 4096; 0: any", NULL,
-         false},
-        {"--weld", 0, CLI_LENGTH, &weld, "D", "instead of the default weld distance", NULL, false},
+        {"--memory", 0, CLI_LENGTH, &settings.megabytes, "MB", "address space for each; default 4096; 0: any",
+         NULL, false},
+        {"--weld", 0, CLI_LENGTH, &settings.weld, "D", "instead of the default weld distance", NULL, false},
+        {"--runs", 0, CLI_COUNT, &settings.runs, "N", "of each, of which the median is shown; default 1",
+         NULL, false},
         {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench soups",
-        .usage = "[--soup NAME] [--limit SECONDS] [--memory MB] [--weld D]",
+        .usage = "[--soup NAME] [--limit SECONDS] [--memory MB] [--weld D] [--runs N]",
         .summary =
             "Soups that others choke on, made anew: CPU seconds (clean to colour, and all), peak memory, "
             "tetrahedra, fine cells, and\n"
@@ -183,6 +227,9 @@ int cli_bench_soups(int argc, char **argv) {
         .options = options};
     cli_texts operands = {0};
     int status = cli_parse(&syntax, argc, argv, &operands);
-    if (status < 0) status = run_soups(name, fmax(limit, 1), weld, megabytes);
-    return status;
+    if (status >= 0) return status;
+    settings.limit = fmax(settings.limit, 1);
+    if (settings.runs < 1 || settings.runs > RUNS_MAX)
+        return cli_misuse(&syntax, "--runs: 1 to %d", RUNS_MAX);
+    return run_soups(&settings);
 }

@@ -30,7 +30,7 @@ typedef struct settings {
 typedef struct run {
     int family;
     uint64_t seed;
-    const char *folder;
+    const char *folder; ///< null: only to be timed
     enf_stress_result result;
 } run;
 
@@ -59,7 +59,21 @@ static void work(void *shared) {
     enf_stress_run(run->family, run->seed, &harness, &run->result);
 }
 
-static enf_status run_once(tally *tally, int family, uint64_t seed, cli_child *child, enf_error *error) {
+/// The least of several times, without a file: a small world takes a tenth of a millisecond, and the first
+/// use of the program's pages, or the waiting for a disk, may take longer.
+static void work_again(void *shared) {
+    run *run = shared;
+    double least = INFINITY;
+    run->folder = NULL;
+    for (int i = 0; i < TIMINGS; i++) {
+        work(run);
+        least = fmin(least, run->result.seconds);
+    }
+    run->result.seconds = least;
+}
+
+static enf_status run_seed(tally *tally, int family, uint64_t seed, void (*work)(void *), cli_child *child,
+                           enf_error *error) {
     run *run = tally->run;
     memset(run, 0, sizeof *run);
     run->family = family, run->seed = seed, run->folder = tally->settings->folder;
@@ -139,7 +153,7 @@ static enf_status time_again(tally *tally, int family, int number, double limit,
     enf_status status = ENF_OK;
     for (int i = 0; !status && i<TIMINGS && * time> limit; i++) {
         cli_child child;
-        status = run_once(tally, family, seed, &child, error);
+        status = run_seed(tally, family, seed, work_again, &child, error);
         const enf_stress_result *result = &tally->run->result;
         if (!status && !child.signal && result->fine_cells > 0)
             *time = fmin(*time, result->seconds / result->fine_cells);
@@ -209,7 +223,7 @@ static enf_status run_family(tally *tally, int family, enf_error *error) {
                               enf_stress_family(family, NULL), seed);
             break;
         }
-        status = run_once(tally, family, seed, &child, error);
+        status = run_seed(tally, family, seed, work, &child, error);
         if (!status) status = note_run(tally, family, seed, &child, &tally->seconds_a_cell[runs], error);
     }
     double median = median_of(tally->seconds_a_cell, runs), worst = 0;
@@ -274,8 +288,9 @@ int cli_bench_stability(int argc, char **argv) {
             "Compiles random soups of ten families with one thread, writes each to a file, checks every\n"
             "invariant of it, and asks oracles: rock or air where the soup is made of solids, exact tests "
             "of\n"
-            "what lies between two points. CSV: a row per family, then one per failure. Exit status 1 if\n"
-            "there is one.",
+            "what lies between two points. A run is slow that takes more than 20 times the family's median\n"
+            "time per fine cell, also when it is done again. CSV: a row per family, then one per failure.\n"
+            "Exit status 1 if there is one.",
         .options = options};
     cli_texts operands = {0};
     int status = cli_parse(&syntax, argc, argv, &operands);

@@ -248,14 +248,21 @@ static bool is_wide(const seeker *s, const facing *face) {
     return enf_pieces_size(&s->pieces, face->piece) == 3 && face->area * face->area > least * least * longest;
 }
 
-/// The most area in three by three by three boxes.
+/// The most area in three by three by three boxes. Sums along one axis after the other; the boxes are used
+/// up.
 static double fullest(double (*area)[BOXES][BOXES]) {
+    enum { STARTS = BOXES - 2 };
     double most = 0;
-    for (int i = 0; i + 2 < BOXES; i++) {
-        for (int j = 0; j + 2 < BOXES; j++) {
-            for (int k = 0; k + 2 < BOXES; k++) {
-                double sum = 0;
-                for (int n = 0; n < 27; n++) sum += area[i + n / 9][j + n / 3 % 3][k + n % 3];
+    for (int i = 0; i < BOXES; i++) {
+        for (int j = 0; j < BOXES; j++)
+            for (int k = 0; k < STARTS; k++) area[i][j][k] += area[i][j][k + 1] + area[i][j][k + 2];
+        for (int j = 0; j < STARTS; j++)
+            for (int k = 0; k < STARTS; k++) area[i][j][k] += area[i][j + 1][k] + area[i][j + 2][k];
+    }
+    for (int i = 0; i < STARTS; i++) {
+        for (int j = 0; j < STARTS; j++) {
+            for (int k = 0; k < STARTS; k++) {
+                double sum = area[i][j][k] + area[i + 1][j][k] + area[i + 2][j][k];
                 most = sum > most ? sum : most;
             }
         }
