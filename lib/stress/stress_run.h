@@ -35,7 +35,8 @@ typedef struct enf_stress_options {
     int cells;   ///< > 0: odd seeds are decimated down to so many cells; otherwise --stop auto
     void (*compiled)(void); ///< called between the pipeline and the rest; may be null
     bool yardstick;         ///< also time CGAL's Delaunay triangulation alone
-    int points; ///< how many the oracles ask for in a run (and as many segments, a quarter of surfaces)
+    int points;     ///< how many the oracles ask for in a run (and as many segments, a quarter of surfaces)
+    bool time_only; ///< nothing is written or judged
 } enf_stress_options;
 
 /// Compiles a soup with one thread, writes it, checks it, asks the oracles. The soup is taken from the case.
