@@ -67,6 +67,7 @@ static enf_status clean(kitchen *k) {
     enf_mesh *mesh = &k->build->mesh;
     enf_status status = enf_mesh_clean(mesh, &k->build->soup, &k->options->clean, k->error);
     if (status != ENF_OK) return status;
+    enf_soup_forget_lines(&k->build->soup);
     static const char *const turns[] = {
         [ENF_TURN_OFF] = "no planes recovered: tolerance 0",
         [ENF_TURN_ROUND] = "not turned: round coordinates",
@@ -162,7 +163,7 @@ static enf_status colour(kitchen *k) {
 
 static enf_status decimate(kitchen *k) {
     enf_build *build = k->build;
-    const enf_complex *complex = &build->complex;
+    enf_complex *complex = &build->complex;
     size_t cells = (size_t)complex->cell_count;
     bool *cell_kept = enf_array_new(cells, sizeof *cell_kept);
     int32_t *node_of = build->cell_of = enf_array_new(cells, sizeof *node_of); // nodes, until they are cells
@@ -173,6 +174,7 @@ static enf_status decimate(kitchen *k) {
     good = good && enf_complex_number_nodes(complex, cell_kept, crack_width(build), node_of, &nodes, &joined);
     free(cell_kept);
     if (!good) return enf_fail_memory(k->error, "the cells");
+    enf_complex_unlist_facets(complex); // this stage needs the most memory, and asks for none of them
     enf_graph graph;
     enf_status status = enf_graph_build(&graph, complex, node_of, nodes, k->error);
     if (status != ENF_OK) return status;
@@ -182,6 +184,7 @@ static enf_status decimate(kitchen *k) {
     status = enf_graph_decimate(&graph, k->options->heuristic, &k->options->stop, unit, tell, k,
                                 &build->decimation, k->error);
     if (status != ENF_OK) return status;
+    if (!enf_complex_list_facets(complex)) return enf_fail_memory(k->error, "the fine complex");
     build->cell_count = build->decimation.cell_count;
     for (int32_t c = 0; c < complex->cell_count; c++) {
         build->cell_of[c] = node_of[c] < 0 ? -1 : build->decimation.cell_of[node_of[c]];
@@ -197,6 +200,7 @@ static enf_status portals(kitchen *k) {
     enf_build *build = k->build;
     enf_status status = enf_portals_find(&build->portals, &build->complex, build->cell_of, k->error);
     if (status != ENF_OK) return status;
+    if (!enf_complex_list_seen(&build->complex)) return enf_fail_memory(k->error, "what cells see");
     say(k, "%d openings; %d pieces joined to %d polygons", (int)build->portals.opening_count,
         (int)build->portals.pieces_merged, (int)build->portals.polygons.count);
     return ENF_OK;

@@ -43,7 +43,7 @@ static void renumber_cells(enf_complex *complex, enf_arrangement *arrangement) {
     arrangement->cell_into = NULL;
 }
 
-static bool list_facets(enf_complex *complex) {
+bool enf_complex_list_facets(enf_complex *complex) {
     size_t cells = (size_t)complex->cell_count;
     int32_t *next = complex->cell_facet = enf_array_zeroed(cells + 2, sizeof *next);
     complex->cell_facets = enf_array_new(2 * (size_t)complex->facet_count, sizeof *complex->cell_facets);
@@ -63,6 +63,12 @@ static bool list_facets(enf_complex *complex) {
         for (size_t i = 0; pass == 0 && i < cells; i++) next[i + 2] += next[i + 1];
     }
     return true;
+}
+
+void enf_complex_unlist_facets(enf_complex *complex) {
+    free(complex->cell_facet);
+    free(complex->cell_facets);
+    complex->cell_facet = complex->cell_facets = NULL;
 }
 
 // ---------------------------------------------------------------------------------------------- sights
@@ -87,8 +93,7 @@ static void sort_numbers(int32_t *numbers, int64_t count) {
     }
 }
 
-/// Per cell the polygons whose front it sees, ascending, each once.
-static bool make_sights(enf_complex *complex) {
+bool enf_complex_list_seen(enf_complex *complex) {
     size_t cells = (size_t)complex->cell_count;
     int64_t *next = complex->seen_offset = enf_array_zeroed(cells + 2, sizeof *next);
     complex->seen = enf_array_new((size_t)complex->covers.count, sizeof *complex->seen);
@@ -139,7 +144,7 @@ enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangemen
                                enf_error *error) {
     (void)crew;
     renumber_cells(complex, arrangement);
-    bool good = list_facets(complex) && make_sights(complex);
+    bool good = enf_complex_list_facets(complex);
     take_arrangement(complex, arrangement);
     for (int i = 0; i < ENF_TIERS; i++) complex->predicates[i] += arrangement->geometry.decided[i];
     return good ? ENF_OK : enf_fail_memory(error, "the fine complex");

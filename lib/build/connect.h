@@ -11,4 +11,12 @@
 enf_status enf_complex_connect(enf_complex *complex, enf_arrangement *arrangement, const enf_crew *crew,
                                enf_error *error);
 
+/// Frees the lists of the facets around each cell, and makes them anew: a stage that needs memory, not them,
+/// can do without. False without memory.
+void enf_complex_unlist_facets(enf_complex *complex);
+bool enf_complex_list_facets(enf_complex *complex);
+
+/// Lists the polygons that each cell sees, for the file. False without memory.
+bool enf_complex_list_seen(enf_complex *complex);
+
 #endif

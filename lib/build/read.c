@@ -24,19 +24,24 @@ static read_function *reader_for(const char *path) {
     return NULL;
 }
 
+/// An attribute that there is not becomes none. True if there was one.
+static bool drop_missing(int32_t *attribute, size_t count) {
+    if (!attribute || *attribute == -1 || (*attribute >= 0 && (size_t)*attribute < count)) return false;
+    *attribute = -1;
+    return true;
+}
+
 bool enf_read_check_corners(enf_soup *soup, size_t first_polygon) {
     for (size_t p = first_polygon; p < soup->polygon_count; p++) {
-        bool attribute_lost = false;
+        bool lost = false;
         for (int64_t c = soup->polygon_corner[p]; c < soup->polygon_corner[p + 1]; c++) {
             int32_t *point = &soup->corner_point[c];
-            int32_t *normal = &soup->corner_normal[c], *texcoord = &soup->corner_texcoord[c];
             if (*point < 0 || (size_t)*point >= soup->point_count) *point = -1;
-            if (*normal < -1 || (*normal >= 0 && (size_t)*normal >= soup->normal_count))
-                *normal = -1, attribute_lost = true;
-            if (*texcoord < -1 || (*texcoord >= 0 && (size_t)*texcoord >= soup->texcoord_count))
-                *texcoord = -1, attribute_lost = true;
+            lost |= drop_missing(soup->corner_normal ? &soup->corner_normal[c] : NULL, soup->normal_count);
+            lost |=
+                drop_missing(soup->corner_texcoord ? &soup->corner_texcoord[c] : NULL, soup->texcoord_count);
         }
-        if (attribute_lost &&
+        if (lost &&
             !enf_soup_reject(soup, ENF_REJECT_SYNTAX, soup->polygon_file[p], soup->polygon_line[p], -1))
             return false;
     }

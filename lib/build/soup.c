@@ -38,6 +38,14 @@ void enf_soup_free(enf_soup *soup) {
     *soup = (enf_soup){0};
 }
 
+void enf_soup_forget_lines(enf_soup *soup) {
+    free(soup->polygon_line);
+    free(soup->polygon_file);
+    soup->polygon_line = NULL;
+    soup->polygon_file = NULL;
+    soup->polygon_line_capacity = soup->polygon_file_capacity = 0;
+}
+
 bool enf_soup_reject(enf_soup *soup, enf_reject reason, int32_t file, int64_t line, int32_t polygon) {
     if (!enf_array_reserve(soup->rejected, soup->rejected_capacity, soup->rejected_count + 1)) return false;
     soup->rejected[soup->rejected_count++] =
@@ -70,6 +78,20 @@ bool enf_soup_add_spawn(enf_soup *soup, double x, double y, double z) {
     return add_tuple(&soup->spawns, &soup->spawn_count, &soup->spawn_capacity, (double[3]){x, y, z}, 3);
 }
 
+/// What the corners of a polygon have joins what those before have. Most worlds have none of it: the list
+/// begins, with -1 for all before, when the first corner has it.
+static bool add_attributes(int32_t **list, size_t *capacity, size_t before, const int32_t *added,
+                           size_t count) {
+    bool any = *list;
+    for (size_t i = 0; added && i < count && !any; i++) any = added[i] != -1;
+    if (!any) return true;
+    const bool begins = !*list;
+    if (!enf_array_reserve(*list, *capacity, before + count)) return false;
+    if (begins) memset(*list, 0xff, before * sizeof **list);
+    for (size_t i = 0; i < count; i++) (*list)[before + i] = added ? added[i] : -1;
+    return true;
+}
+
 static bool reserve_polygon(enf_soup *soup, size_t corners) {
     size_t polygons = soup->polygon_count + 1;
     return enf_array_reserve(soup->polygon_corner, soup->polygon_offset_capacity, polygons + 1) &&
@@ -77,23 +99,22 @@ static bool reserve_polygon(enf_soup *soup, size_t corners) {
            enf_array_reserve(soup->polygon_file, soup->polygon_file_capacity, polygons) &&
            enf_array_reserve(soup->polygon_group, soup->polygon_group_capacity, polygons) &&
            enf_array_reserve(soup->polygon_material, soup->polygon_material_capacity, polygons) &&
-           enf_array_reserve(soup->corner_point, soup->corner_point_capacity, corners) &&
-           enf_array_reserve(soup->corner_normal, soup->corner_normal_capacity, corners) &&
-           enf_array_reserve(soup->corner_texcoord, soup->corner_texcoord_capacity, corners);
+           enf_array_reserve(soup->corner_point, soup->corner_point_capacity, corners);
 }
 
 bool enf_soup_add_polygon(enf_soup *soup, size_t corner_count, const int32_t *points, const int32_t *normals,
                           const int32_t *texcoords, int32_t file, int64_t line, int32_t group,
                           int32_t material) {
     if (soup->polygon_count >= INT32_MAX) return false;
-    if (!reserve_polygon(soup, soup->corner_count + corner_count)) return false;
+    const size_t first = soup->corner_count;
+    if (!reserve_polygon(soup, first + corner_count) ||
+        !add_attributes(&soup->corner_normal, &soup->corner_normal_capacity, first, normals, corner_count) ||
+        !add_attributes(&soup->corner_texcoord, &soup->corner_texcoord_capacity, first, texcoords,
+                        corner_count))
+        return false;
     if (soup->polygon_count == 0) soup->polygon_corner[0] = 0;
-    size_t polygon = soup->polygon_count++, first = soup->corner_count;
-    for (size_t i = 0; i < corner_count; i++) {
-        soup->corner_point[first + i] = points[i];
-        soup->corner_normal[first + i] = normals ? normals[i] : -1;
-        soup->corner_texcoord[first + i] = texcoords ? texcoords[i] : -1;
-    }
+    size_t polygon = soup->polygon_count++;
+    for (size_t i = 0; i < corner_count; i++) soup->corner_point[first + i] = points[i];
     soup->corner_count += corner_count;
     soup->polygon_corner[polygon + 1] = (int64_t)soup->corner_count;
     soup->polygon_line[polygon] = line;

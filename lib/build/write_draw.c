@@ -63,8 +63,8 @@ static bool add_triangle(drawer *d, const render_corner corners[3], int32_t poly
     enf_file_triangle *out = &d->triangles[d->triangle_count];
     for (int k = 0; k < 3; k++) {
         out->point[k] = corners[k].point;
-        out->normal[k] = soup->corner_normal[corners[k].looks];
-        out->texcoord[k] = soup->corner_texcoord[corners[k].looks];
+        out->normal[k] = soup->corner_normal ? soup->corner_normal[corners[k].looks] : -1;
+        out->texcoord[k] = soup->corner_texcoord ? soup->corner_texcoord[corners[k].looks] : -1;
     }
     if (out->point[0] == out->point[1] || out->point[1] == out->point[2] || out->point[2] == out->point[0])
         return true; // the input repeats a corner

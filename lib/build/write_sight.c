@@ -15,6 +15,14 @@
 /// (lib/run/walk.h).
 #define PADDING 0x1p-19
 
+/// Where a barrier comes from. Barriers are made twice, once for their boxes alone and once where the tree
+/// wants them: there may be too many to have them in two orders.
+typedef struct origin {
+    int32_t kind;
+    int32_t number; ///< a mesh polygon, a piece, a triangle, or a loop of the portals
+    int32_t index;  ///< as in the file
+} origin;
+
 typedef struct sighter {
     enf_image *image;
     const enf_build *build;
@@ -25,6 +33,11 @@ typedef struct sighter {
     size_t barrier_count, barrier_capacity;
     double (*vertices)[3];
     size_t vertex_count, vertex_capacity;
+
+    origin *origins;
+    size_t origin_count, origin_capacity;
+    enf_barrier_box *boxes; ///< as many
+    size_t box_capacity;
     int32_t wall_count; ///< the rest are portals
 } sighter;
 
@@ -43,22 +56,12 @@ static bool add_barrier(sighter *s, const double normal[3], int32_t kind, int32_
     return true;
 }
 
-/// A point of the fine grid.
-static void hold(sighter *s, const double at[3]) {
-    for (int a = 0; a < 3; a++) {
-        s->sight.box_min[a] = fmin(s->sight.box_min[a], at[a]);
-        s->sight.box_max[a] = fmax(s->sight.box_max[a], at[a]);
-        s->sight.extent = fmax(s->sight.extent, fabs(at[a]));
-    }
-}
-
 /// A point in grid steps.
 static void add_vertex(sighter *s, const double grid[3]) {
     double *out = s->vertices[s->vertex_count++];
     for (int a = 0; a < 3; a++) {
         out[a] = fmax(-ENF_FILE_GRID_MAX, fmin(nearbyint(grid[a] * s->scale), ENF_FILE_GRID_MAX)) + 0.0;
     }
-    hold(s, out);
 }
 
 /// u x v with length 1: exact up to the last rounding.
@@ -110,44 +113,6 @@ static bool add_polygon(sighter *s, int32_t polygon, int32_t triangle) {
     return true;
 }
 
-/// Marks the polygons with a kept cell on either side, and adds the cracks there.
-static bool find_walls(sighter *s, uint8_t *is_wall) {
-    const enf_complex *complex = &s->build->complex;
-    for (int32_t facet = 0; facet < complex->facet_count; facet++) {
-        const int32_t *fine = complex->facet_cell[facet];
-        if ((fine[0] < 0 || s->build->cell_of[fine[0]] < 0) &&
-            (fine[1] < 0 || s->build->cell_of[fine[1]] < 0))
-            continue;
-        for (int32_t piece = complex->facet_piece[facet]; piece < complex->facet_piece[facet + 1]; piece++) {
-            int32_t cover = complex->piece_cover[piece];
-            if (cover >= 0) is_wall[complex->cover_polygon[cover]] = 1;
-            if (cover != ENF_PIECE_SEALED) continue;
-            bool whole = complex->pieces.offset[piece] == complex->pieces.offset[piece + 1];
-            if (!add_loop(s, whole ? &complex->facets : &complex->pieces, whole ? facet : piece,
-                          complex->facet_plane[facet], false, ENF_FILE_BARRIER_CRACK, -1))
-                return false;
-        }
-    }
-    return true;
-}
-
-static bool add_walls(sighter *s) {
-    const enf_file_view *view = &s->image->view;
-    size_t polygons = s->build->mesh.polygon_count;
-    uint8_t *is_wall = enf_array_zeroed(polygons + 1, sizeof *is_wall);
-    bool good = is_wall && find_walls(s, is_wall);
-    int32_t triangle = 0; // they are in the order of the polygons
-    for (int32_t i = 0; good && i < (int32_t)polygons; i++) {
-        while (triangle < view->triangle_count && view->triangles[triangle].mesh_polygon >= 0 &&
-               view->triangles[triangle].mesh_polygon < i)
-            triangle++;
-        bool drawn = triangle < view->triangle_count && view->triangles[triangle].mesh_polygon == i;
-        if (is_wall[i]) good = add_polygon(s, i, drawn ? triangle : -1);
-    }
-    free(is_wall);
-    return good;
-}
-
 /// A detail triangle, unless it reaches out of the fine grid.
 static bool add_detail(sighter *s, int32_t triangle) {
     const enf_file_view *view = &s->image->view;
@@ -174,28 +139,35 @@ static bool add_detail(sighter *s, int32_t triangle) {
     return true;
 }
 
-static bool add_details(sighter *s) {
-    const enf_file_view *view = &s->image->view;
-    for (int32_t i = 0; i < view->triangle_count; i++) {
-        if (view->triangles[i].mesh_polygon < 0 && !add_detail(s, i)) return false;
-    }
-    return true;
+static bool add_crack(sighter *s, int32_t piece) {
+    const enf_complex *complex = &s->build->complex;
+    const int32_t facet = complex->piece_facet[piece];
+    const bool whole = complex->pieces.offset[piece] == complex->pieces.offset[piece + 1];
+    return add_loop(s, whole ? &complex->facets : &complex->pieces, whole ? facet : piece,
+                    complex->facet_plane[facet], false, ENF_FILE_BARRIER_CRACK, -1);
 }
 
 /// The front of a portal's polygons is where the even portal leads from: the lower cell.
-static bool add_portals(sighter *s) {
+static bool add_portal(sighter *s, int32_t loop, int32_t portal) {
     const enf_portals *portals = &s->build->portals;
-    for (int32_t i = 0; i < portals->opening_count; i++) {
-        for (int32_t loop = portals->opening_polygon[i]; loop < portals->opening_polygon[i + 1]; loop++) {
-            if (!add_loop(s, &portals->polygons, loop, portals->polygon_plane[loop],
-                          portals->polygon_side[loop] != 0, ENF_FILE_BARRIER_PORTAL, 2 * i))
-                return false;
-        }
-    }
-    return true;
+    return add_loop(s, &portals->polygons, loop, portals->polygon_plane[loop],
+                    portals->polygon_side[loop] != 0, ENF_FILE_BARRIER_PORTAL, portal);
 }
 
-// --- Trees
+static bool add_from(sighter *s, const origin *from) {
+    switch (from->kind) {
+    case ENF_FILE_BARRIER_WALL:
+        return add_polygon(s, from->number, from->index);
+    case ENF_FILE_BARRIER_CRACK:
+        return add_crack(s, from->number);
+    case ENF_FILE_BARRIER_DETAIL:
+        return add_detail(s, from->number);
+    default:
+        return add_portal(s, from->number, from->index);
+    }
+}
+
+// --- Boxes
 // -------------------------------------------------------------------------------------------------------
 
 static float round_down(double value) {
@@ -208,14 +180,14 @@ static float round_up(double value) {
     return (double)rounded < value ? nextafterf(rounded, INFINITY) : rounded;
 }
 
-static enf_barrier_box box_around(const sighter *s, int32_t barrier) {
-    const enf_file_barrier *at = &s->barriers[barrier];
-    enf_barrier_box box = {.barrier = barrier};
+/// Around all vertices there are.
+static enf_barrier_box box_around(const sighter *s) {
+    enf_barrier_box box = {.barrier = (int32_t)s->origin_count};
     for (int a = 0; a < 3; a++) {
         double low = INFINITY, high = -INFINITY;
-        for (int32_t k = 0; k < at->vertex_count; k++) {
-            low = fmin(low, s->vertices[at->vertex_first + k][a]);
-            high = fmax(high, s->vertices[at->vertex_first + k][a]);
+        for (size_t k = 0; k < s->vertex_count; k++) {
+            low = fmin(low, s->vertices[k][a]);
+            high = fmax(high, s->vertices[k][a]);
         }
         box.min[a] = round_down(low - PADDING * s->sight.extent);
         box.max[a] = round_up(high + PADDING * s->sight.extent);
@@ -223,44 +195,83 @@ static enf_barrier_box box_around(const sighter *s, int32_t barrier) {
     return box;
 }
 
-/// Moves the barriers to where the tree has put their boxes, their vertices along with them.
-static bool arrange(sighter *s, const enf_barrier_box *boxes) {
-    enf_file_barrier *barriers = enf_array_new(s->barrier_count, sizeof *barriers);
-    double(*vertices)[3] = enf_array_new(s->vertex_count, sizeof *vertices);
-    bool good = barriers && vertices;
-    int32_t next = 0;
-    for (size_t i = 0; good && i < s->barrier_count; i++) {
-        barriers[i] = s->barriers[boxes[i].barrier];
-        memcpy(vertices[next], s->vertices[barriers[i].vertex_first],
-               (size_t)barriers[i].vertex_count * sizeof *vertices);
-        barriers[i].vertex_first = next;
-        next += barriers[i].vertex_count;
-    }
-    if (!good) {
-        free(barriers);
-        free(vertices);
+/// Notes the box of a barrier, if there is one.
+static bool note(sighter *s, int32_t kind, int32_t number, int32_t index) {
+    const origin from = {kind, number, index};
+    s->barrier_count = s->vertex_count = 0;
+    if (!add_from(s, &from)) return false;
+    if (s->barrier_count == 0) return true;
+    if (!enf_array_reserve(s->origins, s->origin_capacity, s->origin_count + 1) ||
+        !enf_array_reserve(s->boxes, s->box_capacity, s->origin_count + 1))
         return false;
-    }
-    free(s->barriers);
-    free(s->vertices);
-    s->barriers = barriers;
-    s->vertices = vertices;
+    s->boxes[s->origin_count] = box_around(s);
+    s->origins[s->origin_count++] = from;
     return true;
 }
 
-static bool make_trees(sighter *s, enf_barrier_tree *walls, enf_barrier_tree *portals) {
-    enf_barrier_box *boxes = enf_array_new(s->barrier_count, sizeof *boxes);
-    bool good = boxes != NULL;
-    int32_t count = (int32_t)s->barrier_count, wall_count = s->wall_count;
-    for (int32_t i = 0; good && i < count; i++) boxes[i] = box_around(s, i);
-    good = good && enf_barrier_tree_make(walls, boxes, wall_count, 0) &&
-           enf_barrier_tree_make(portals, boxes + wall_count, count - wall_count, wall_count) &&
-           arrange(s, boxes);
-    free(boxes);
+/// Marks the polygons with a kept cell on either side, and notes the cracks there.
+static bool find_walls(sighter *s, uint8_t *is_wall) {
+    const enf_complex *complex = &s->build->complex;
+    for (int32_t facet = 0; facet < complex->facet_count; facet++) {
+        const int32_t *fine = complex->facet_cell[facet];
+        if ((fine[0] < 0 || s->build->cell_of[fine[0]] < 0) &&
+            (fine[1] < 0 || s->build->cell_of[fine[1]] < 0))
+            continue;
+        for (int32_t piece = complex->facet_piece[facet]; piece < complex->facet_piece[facet + 1]; piece++) {
+            int32_t cover = complex->piece_cover[piece];
+            if (cover >= 0) is_wall[complex->cover_polygon[cover]] = 1;
+            if (cover == ENF_PIECE_SEALED && !note(s, ENF_FILE_BARRIER_CRACK, piece, -1)) return false;
+        }
+    }
+    return true;
+}
+
+static bool note_walls(sighter *s) {
+    const enf_file_view *view = &s->image->view;
+    size_t polygons = s->build->mesh.polygon_count;
+    uint8_t *is_wall = enf_array_zeroed(polygons + 1, sizeof *is_wall);
+    bool good = is_wall && find_walls(s, is_wall);
+    int32_t triangle = 0; // they are in the order of the polygons
+    for (int32_t i = 0; good && i < (int32_t)polygons; i++) {
+        while (triangle < view->triangle_count && view->triangles[triangle].mesh_polygon >= 0 &&
+               view->triangles[triangle].mesh_polygon < i)
+            triangle++;
+        bool drawn = triangle < view->triangle_count && view->triangles[triangle].mesh_polygon == i;
+        if (is_wall[i]) good = note(s, ENF_FILE_BARRIER_WALL, i, drawn ? triangle : -1);
+    }
+    free(is_wall);
     return good;
 }
 
-static void hold_points(sighter *s) {
+static bool note_details(sighter *s) {
+    const enf_file_view *view = &s->image->view;
+    bool good = true;
+    for (int32_t i = 0; good && i < view->triangle_count; i++)
+        if (view->triangles[i].mesh_polygon < 0) good = note(s, ENF_FILE_BARRIER_DETAIL, i, i);
+    return good;
+}
+
+static bool note_portals(sighter *s) {
+    const enf_portals *portals = &s->build->portals;
+    for (int32_t i = 0; i < portals->opening_count; i++) {
+        for (int32_t loop = portals->opening_polygon[i]; loop < portals->opening_polygon[i + 1]; loop++)
+            if (!note(s, ENF_FILE_BARRIER_PORTAL, loop, 2 * i)) return false;
+    }
+    return true;
+}
+
+/// A point of the fine grid.
+static void hold(sighter *s, const double at[3]) {
+    for (int a = 0; a < 3; a++) {
+        s->sight.box_min[a] = fmin(s->sight.box_min[a], at[a]);
+        s->sight.box_max[a] = fmax(s->sight.box_max[a], at[a]);
+        s->sight.extent = fmax(s->sight.extent, fabs(at[a]));
+    }
+}
+
+/// What the padding depends on: the box around all points, and details beyond them. Everything else lies
+/// between points.
+static bool find_extent(sighter *s) {
     const enf_file_view *view = &s->image->view;
     s->sight.extent = 1;
     for (int32_t i = 0; i < view->point_count; i++) {
@@ -272,6 +283,30 @@ static void hold_points(sighter *s) {
         }
         hold(s, at);
     }
+    for (int32_t i = 0; i < view->triangle_count; i++) {
+        if (view->triangles[i].mesh_polygon >= 0) continue;
+        s->barrier_count = s->vertex_count = 0;
+        if (!add_detail(s, i)) return false;
+        for (size_t k = 0; k < s->vertex_count; k++) hold(s, s->vertices[k]);
+    }
+    return true;
+}
+
+// --- Trees
+// -------------------------------------------------------------------------------------------------------
+
+/// The barriers in the order of their boxes.
+static bool make_barriers(sighter *s) {
+    s->barrier_count = s->vertex_count = 0;
+    for (size_t i = 0; i < s->origin_count; i++)
+        if (!add_from(s, &s->origins[s->boxes[i].barrier])) return false;
+    return true;
+}
+
+static bool make_trees(sighter *s, enf_barrier_tree *walls, enf_barrier_tree *portals) {
+    int32_t count = (int32_t)s->origin_count, wall_count = s->wall_count;
+    return enf_barrier_tree_make(walls, s->boxes, wall_count, 0) &&
+           enf_barrier_tree_make(portals, s->boxes + wall_count, count - wall_count, wall_count);
 }
 
 static bool set_view(sighter *s, const enf_barrier_tree *walls, const enf_barrier_tree *portals) {
@@ -294,10 +329,12 @@ static bool set_view(sighter *s, const enf_barrier_tree *walls, const enf_barrie
 enf_status enf_image_sight(enf_image *image, const enf_build *build, enf_error *error) {
     sighter s = {.image = image, .build = build, .scale = image->view.frame->locate_scale};
     enf_barrier_tree walls = {NULL, 0}, portals = {NULL, 0};
-    hold_points(&s);
-    bool good = add_walls(&s) && add_details(&s);
-    s.wall_count = (int32_t)s.barrier_count;
-    good = good && add_portals(&s) && make_trees(&s, &walls, &portals) && set_view(&s, &walls, &portals);
+    bool good = find_extent(&s) && note_walls(&s) && note_details(&s);
+    s.wall_count = (int32_t)s.origin_count;
+    good = good && note_portals(&s) && make_trees(&s, &walls, &portals) && make_barriers(&s) &&
+           set_view(&s, &walls, &portals);
+    free(s.origins);
+    free(s.boxes);
     enf_image_own(image, s.barriers);
     enf_image_own(image, s.vertices);
     enf_image_own(image, walls.nodes);
