@@ -304,6 +304,10 @@ static void ask_objects(stage *s) {
     s->answers += enf_objects_cells(s->objects, *handle, cells, ROOM) > 0;
     s->answers += enf_objects_of_cell(s->objects, cell, found, ROOM) > 0;
     s->answers += enf_objects_in_cells(s->objects, s->query, &cell, 1, found, ROOM) > 0;
+    enf_object_seen seen[ROOM];
+    enf_camera camera = enf_camera_look(s->from, planes[0], s->to, 1.2, 1.6);
+    const enf_visible *visible = enf_view_run(s->look, s->instance, &camera);
+    s->answers += enf_objects_in_view(s->objects, s->query, visible, seen, ROOM) > 0;
     enf_objects_meets(s->objects, *handle, planes, 1);
     s->answers += enf_objects_get_use(s->objects).objects > 0;
 }
