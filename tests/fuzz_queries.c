@@ -182,13 +182,16 @@ static void use_shapes(const enf_world *world, const enf_file_view *file) {
 
 static void use_prefetch(const enf_world *world, const enf_file_view *file) {
     enf_prefetch *prefetch = NULL;
-    if (!enf_prefetch_create(&prefetch, world, NULL)) {
+    enf_stream *stream = NULL;
+    if (!enf_prefetch_create(&prefetch, world, NULL) && !enf_stream_create(&stream, world, NULL)) {
         for (int32_t i = 0; i < file->cell_count && i < CELLS; i++) {
             sink +=
                 enf_prefetch_list(prefetch, i, file->cells[i].box_min, file->cells[i].box_max, 1, NULL, 0);
-            enf_world_advise_cell(world, i, i % 2);
+            enf_stream_load(stream, i);
+            if (i % 2) enf_stream_drop(stream, i);
         }
     }
+    enf_stream_free(stream);
     enf_prefetch_free(prefetch);
 }
 

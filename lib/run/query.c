@@ -177,16 +177,13 @@ enf_status enf_query_cells(enf_query *query, const enf_instance *instance, int32
                            enf_error *error) {
     *reach = (enf_reach){0, 0, true};
     query->flooded_count = query->image_count = 0;
-    if (!enf_shape_is_valid(shape))
-        return enf_fail(error, ENF_BAD_USAGE, "a shape must be finite, and its size must not be negative");
+    enf_shape own;
+    enf_status status = enf_shape_take(&own, shape, error);
+    if (status) return status;
     if (start < -1 || start >= query->view->cell_count)
         return enf_fail(error, ENF_BAD_USAGE, "cell %ld: the world has cells 0 to %ld", (long)start,
                         (long)query->view->cell_count - 1);
-    if (start < 0) start = enf_world_locate(query->world, shape->centre, -1).cell;
-    enf_shape own = {.kind = shape->kind};
-    memcpy(own.centre, shape->centre, sizeof own.centre);
-    if (own.kind == ENF_SHAPE_SPHERE) own.radius = shape->radius;
-    if (own.kind == ENF_SHAPE_BOX) memcpy(own.half, shape->half, sizeof own.half);
+    if (start < 0) start = enf_world_locate(query->world, own.centre, -1).cell;
     enf_query_flood(query, instance, start, &own);
     for (int32_t i = 0; i < query->flooded_count && i < capacity; i++) {
         const enf_flooded *flooded = &query->flooded[i];
