@@ -22,8 +22,8 @@ typedef struct verdict {
 
 /// What `enfilade check` would say of the file.
 static enf_status check_build(const cli_job *job, verdict *verdict, enf_error *error) {
-    enf_image image;
-    enf_status status = enf_image_make(&image, &job->build, job->options_json, error);
+    enf_build_image image;
+    enf_status status = enf_build_image_make(&image, &job->build, job->options_json, error);
     if (status) return status;
     enf_check_report *report = calloc(1, sizeof *report);
     double started = enf_timer_now();
@@ -36,7 +36,7 @@ static enf_status check_build(const cli_job *job, verdict *verdict, enf_error *e
         status = ENF_OK;
     }
     free(report);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
     return status;
 }
 

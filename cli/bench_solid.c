@@ -85,7 +85,7 @@ static enf_status compile_and_ask(const char *path, bool with_spawns, const cli_
                                   double margin, probe *probe, answers *answers, enf_error *error) {
     static const char *const exclude[] = {"*liquid*"};
     enf_build build = {0};
-    enf_image image;
+    enf_build_image image;
     enf_build_options options = {
         .clean = {.weld = -1, .plane_tolerance = -1, .exclude = exclude, .exclude_count = 1},
         .keep = ENF_KEEP_ALL,
@@ -96,12 +96,12 @@ static enf_status compile_and_ask(const char *path, bool with_spawns, const cli_
         status = enf_fail_memory(error, "the spawn points");
     if (!with_spawns) build.soup.spawn_count = 0;
     if (!status) status = enf_build_run(&build, &options, error);
-    if (!status) status = enf_image_make(&image, &build, NULL, error);
+    if (!status) status = enf_build_image_make(&image, &build, NULL, error);
     if (!status) {
         ask(&image.view, probe, answers);
         for (int32_t r = 0; r < build.regions.region_count; r++)
             answers->ambiguous += build.regions.ambiguous[r];
-        enf_image_free(&image);
+        enf_build_image_free(&image);
     }
     enf_build_free(&build);
     return status;

@@ -77,7 +77,7 @@ static enf_status throw_lines(const request *request, const enf_file_view *view,
     return status;
 }
 
-static enf_status find_sets(const request *request, enf_image *image, row *row, enf_error *error) {
+static enf_status find_sets(const request *request, enf_build_image *image, row *row, enf_error *error) {
     const enf_visibility_options options = {.method = (enf_method)request->method,
                                             .threads = request->settings.threads};
     double seconds[RUNS_MOST];
@@ -98,7 +98,7 @@ static enf_status find_sets(const request *request, enf_image *image, row *row, 
 }
 
 /// Reads and compiles; the median of several runs is the time. The last image is left.
-static enf_status compile(const request *request, const char *path, enf_image *image, row *row,
+static enf_status compile(const request *request, const char *path, enf_build_image *image, row *row,
                           enf_error *error) {
     double seconds[RUNS_MOST];
     cli_texts inputs = {0};
@@ -111,10 +111,10 @@ static enf_status compile(const request *request, const char *path, enf_image *i
         if (!status) status = enf_build_write(&job.build, job.options_json, "/dev/null", error);
         seconds[run] = job.seconds + enf_timer_now() - started;
         if (!status && run + 1 == request->runs) {
-            status = enf_image_make(image, &job.build, job.options_json, error);
+            status = enf_build_image_make(image, &job.build, job.options_json, error);
             if (!status) row->cells = image->view.cell_count;
             if (!status) status = find_sets(request, image, row, error);
-            enf_image_free(image);
+            enf_build_image_free(image);
         }
         cli_job_free(&job);
     }
@@ -142,7 +142,7 @@ static void print_row(void *user, const char *name, const void *data) {
 
 static int work(void *user, const char *path, const char *name, void *result) {
     enf_error error = {0};
-    enf_image image;
+    enf_build_image image;
     (void)name; // the path says it
     enf_status status = compile(user, path, &image, result, &error);
     return status ? cli_folder_fail(path, &error) : ENF_OK;

@@ -68,7 +68,8 @@ static void warn_of_leak(const cli_job *job, const char *path) {
 }
 
 /// The stage of the recipe that the builder leaves to us: it works on what will be in the file.
-static enf_status find_visibility(cli_job *job, enf_image *image, cli_progress *progress, enf_error *error) {
+static enf_status find_visibility(cli_job *job, enf_build_image *image, cli_progress *progress,
+                                  enf_error *error) {
     const int choice = job->settings->pvs;
     if (choice == CLI_PVS_NONE) return ENF_OK;
     double started = enf_timer_now(), cpu_started = enf_timer_cpu();
@@ -94,14 +95,14 @@ static enf_status find_visibility(cli_job *job, enf_image *image, cli_progress *
 }
 
 static enf_status write_world(cli_job *job, const char *path, cli_progress *progress, enf_error *error) {
-    enf_image image;
-    enf_status status = enf_image_make(&image, &job->build, job->options_json, error);
+    enf_build_image image;
+    enf_status status = enf_build_image_make(&image, &job->build, job->options_json, error);
     if (status) return status;
     status = find_visibility(job, &image, progress, error);
     double started = enf_timer_now(), cpu_started = enf_timer_cpu();
     cli_progress_report(progress, "write", 0);
     if (!status) status = enf_view_save(&image.view, path, error);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
     struct stat about;
     if (!status && stat(path, &about) == 0 && S_ISREG(about.st_mode))
         job->file_size = (uint64_t)about.st_size;

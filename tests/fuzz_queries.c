@@ -150,10 +150,14 @@ static enf_shape shape_at(const enf_file_cell *cell, int32_t number) {
 }
 
 static void use_shapes(const enf_world *world, const enf_file_view *file) {
+    static const double up[3] = {0, 0, 1}, forward[3] = {1, 0.5, 0.125};
     enf_query *query = NULL;
     enf_objects *objects = NULL;
+    enf_view *view = NULL;
+    enf_instance *instance = make_instance(world, file);
     enf_objects_options options = {sizeof options, 8, 16};
     enf_object near = {0, 0};
+    enf_view_create(&view, world, NULL, NULL);
     if (!enf_query_create(&query, world, NULL, NULL) &&
         !enf_objects_create(&objects, world, &options, NULL)) {
         for (int32_t i = 0; i < file->cell_count && i < CELLS; i++) {
@@ -164,21 +168,30 @@ static void use_shapes(const enf_world *world, const enf_file_view *file) {
             if (enf_objects_add(objects, &shape, 0, &near, &near, NULL)) continue;
             enf_objects_move(objects, near, &shape, NULL);
             sink += enf_objects_in_cells(objects, query, &i, 1, NULL, 0);
+            enf_object_seen seen[4];
+            enf_camera camera = enf_camera_look(shape.centre, forward, up, 1, 1);
+            if (view)
+                sink += enf_objects_in_view(objects, query, enf_view_run(view, instance, &camera), seen, 4);
         }
     }
+    enf_instance_free(instance);
+    enf_view_free(view);
     enf_objects_free(objects);
     enf_query_free(query);
 }
 
 static void use_prefetch(const enf_world *world, const enf_file_view *file) {
     enf_prefetch *prefetch = NULL;
-    if (!enf_prefetch_create(&prefetch, world, NULL)) {
+    enf_stream *stream = NULL;
+    if (!enf_prefetch_create(&prefetch, world, NULL) && !enf_stream_create(&stream, world, NULL)) {
         for (int32_t i = 0; i < file->cell_count && i < CELLS; i++) {
             sink +=
                 enf_prefetch_list(prefetch, i, file->cells[i].box_min, file->cells[i].box_max, 1, NULL, 0);
-            enf_world_advise_cell(world, i, i % 2);
+            enf_stream_load(stream, i);
+            if (i % 2) enf_stream_drop(stream, i);
         }
     }
+    enf_stream_free(stream);
     enf_prefetch_free(prefetch);
 }
 

@@ -152,12 +152,12 @@ void pipeline_build(enf_build *build, const enf_build_options *options) {
 }
 
 void pipeline_check(const enf_build *build) {
-    enf_image image;
+    enf_build_image image;
     enf_check_report report;
     enf_error error = {0};
-    if (enf_image_make(&image, build, NULL, &error) != ENF_OK) fail_msg("%s", error.text);
+    if (enf_build_image_make(&image, build, NULL, &error) != ENF_OK) fail_msg("%s", error.text);
     enf_status status = enf_world_check(&image.view, &report, &error);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
     if (status != ENF_OK) fail_msg("%s", error.text);
 }
 

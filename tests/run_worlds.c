@@ -26,7 +26,7 @@ typedef struct opening {
 
 typedef struct maker {
     fixture fixture;
-    enf_image image;
+    enf_build_image image;
     int side;
     uint64_t seed;
     int32_t cube_count;
@@ -339,7 +339,7 @@ run_world run_world_grid(int side, bool turned, uint64_t seed) {
     const enf_frame frame = {0.25, {0, 1, 2}, {1, 1, 1},
                              1,    turned,    {{0.6, 0, -0.8}, {0, 1, 0}, {0.8, 0, 0.6}}};
     fixture_make(&m.fixture, side, &frame);
-    if (enf_image_make(&m.image, &m.fixture.build, "{}", NULL)) abort();
+    if (enf_build_image_make(&m.image, &m.fixture.build, "{}", NULL)) abort();
     m.cell_of = take((size_t)m.cube_count, sizeof *m.cell_of);
     for (int32_t i = 0; i < m.cube_count; i++) m.cell_of[i] = i < m.cube_count / 2 ? i : -1;
     visit_faces(&m, join_cells);
@@ -357,7 +357,7 @@ run_world run_world_grid(int side, bool turned, uint64_t seed) {
     void *taken[] = {m.cell_of,      m.openings,       m.cells,     m.portals,    m.polygons, m.vertices,
                      m.cell_portals, m.cell_triangles, m.fine_cell, m.pvs_offset, m.pvs_rows};
     for (size_t i = 0; i < sizeof taken / sizeof *taken; i++) free(taken[i]);
-    enf_image_free(&m.image);
+    enf_build_image_free(&m.image);
     fixture_free(&m.fixture);
     return grid;
 }

@@ -143,6 +143,7 @@ typedef struct stage {
     enf_paths *paths, *plain;
     enf_path_finder *table_finder, *finder;
     enf_prefetch *prefetch;
+    enf_stream *stream;
     uint64_t seed;
     double from[3], to[3];
     enf_place place; ///< of `from`
@@ -193,10 +194,12 @@ static void set_stage(stage *s, uint64_t seed) {
     make(enf_path_finder_create(&s->table_finder, s->paths, NULL, &error), &error);
     make(enf_path_finder_create(&s->finder, s->plain, NULL, &error), &error);
     make(enf_prefetch_create(&s->prefetch, world, &error), &error);
+    make(enf_stream_create(&s->stream, world, &error), &error);
 }
 
 static void clear_stage(stage *s) {
     enf_prefetch_free(s->prefetch);
+    enf_stream_free(s->stream);
     enf_path_finder_free(s->finder);
     enf_path_finder_free(s->table_finder);
     enf_paths_free(s->plain);
@@ -304,6 +307,10 @@ static void ask_objects(stage *s) {
     s->answers += enf_objects_cells(s->objects, *handle, cells, ROOM) > 0;
     s->answers += enf_objects_of_cell(s->objects, cell, found, ROOM) > 0;
     s->answers += enf_objects_in_cells(s->objects, s->query, &cell, 1, found, ROOM) > 0;
+    enf_object_seen seen[ROOM];
+    enf_camera camera = enf_camera_look(s->from, planes[0], s->to, 1.2, 1.6);
+    const enf_visible *visible = enf_view_run(s->look, s->instance, &camera);
+    s->answers += enf_objects_in_view(s->objects, s->query, visible, seen, ROOM) > 0;
     enf_objects_meets(s->objects, *handle, planes, 1);
     s->answers += enf_objects_get_use(s->objects).objects > 0;
 }
@@ -358,7 +365,8 @@ static void ask_prefetch(stage *s) {
     enf_wanted wanted[ROOM];
     int32_t cell = s->place.cell >= 0 ? s->place.cell : 0;
     s->answers += enf_prefetch_list(s->prefetch, cell, s->from, s->to, 1, wanted, ROOM) > 0;
-    enf_world_advise_cell(s->w.world, cell, true);
+    s->answers += enf_stream_load(s->stream, cell);
+    s->answers += enf_stream_drop(s->stream, cell);
 }
 
 /// What fails takes no memory for its words either.

@@ -52,10 +52,10 @@ static enf_file_section *section_of(unsigned char *file, const char *tag) {
 
 static void every_array_comes_back_as_it_was(void **state) {
     fixture_saved *s = *state;
-    enf_image image;
+    enf_build_image image;
     enf_file_view view;
     enf_error error = {0};
-    assert_int_equal(enf_image_make(&image, &s->fixture.build, "{}", &error), ENF_OK);
+    assert_int_equal(enf_build_image_make(&image, &s->fixture.build, "{}", &error), ENF_OK);
     assert_int_equal(enf_file_read(&view, s->bytes, s->size, false, &error), ENF_OK);
     int compared = 0;
     for (int i = 0; i < enf_section_spec_count; i++) {
@@ -76,7 +76,7 @@ static void every_array_comes_back_as_it_was(void **state) {
     assert_int_equal(view.tetrahedron_count, 48);
     assert_int_equal(view.fine_count, 49);
     assert_int_equal(view.box_count, 95);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
 }
 
 static void names_and_options_come_back(void **state) {
@@ -192,9 +192,9 @@ static void rows_come_back_from_their_code(void **state) {
 
 static void a_visible_set_is_kept_and_looked_at(void **state) {
     fixture_saved *s = *state;
-    enf_image image;
+    enf_build_image image;
     enf_error error = {0};
-    assert_int_equal(enf_image_make(&image, &s->fixture.build, "{}", &error), ENF_OK);
+    assert_int_equal(enf_build_image_make(&image, &s->fixture.build, "{}", &error), ENF_OK);
     assert_int_equal(image.view.cell_count, 2);
     const enf_file_pvs pvs = {.method = ENF_FILE_PVS_EXACT, .pairs = 4};
     static const struct {
@@ -222,7 +222,7 @@ static void a_visible_set_is_kept_and_looked_at(void **state) {
         image.view.pvs_byte_count = cases[i].offsets[2];
         if (enf_view_check(&image.view, &error) != cases[i].status) fail_msg("case %zu: %s", i, error.text);
     }
-    enf_image_free(&image);
+    enf_build_image_free(&image);
 }
 
 static void portals_face_the_cell_they_lead_from(void **state) {
@@ -235,9 +235,9 @@ static void portals_face_the_cell_they_lead_from(void **state) {
         {1, {1, 2, 0}, {1, 1, -1}, -1, true, {{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}}}};
     for (size_t i = 0; i < sizeof frames / sizeof *frames; i++) {
         fixture f;
-        enf_image image;
+        enf_build_image image;
         fixture_make(&f, 4, &frames[i]);
-        assert_int_equal(enf_image_make(&image, &f.build, NULL, NULL), ENF_OK);
+        assert_int_equal(enf_build_image_make(&image, &f.build, NULL, NULL), ENF_OK);
         const enf_file_view *view = &image.view;
         assert_int_equal(view->portal_count, 2);
         for (int32_t p = 0; p < 2; p++) {
@@ -262,7 +262,7 @@ static void portals_face_the_cell_they_lead_from(void **state) {
                 assert_true(turn / 2 > 0.999 * polygon->area && turn / 2 < 1.001 * polygon->area);
             }
         }
-        enf_image_free(&image);
+        enf_build_image_free(&image);
         fixture_free(&f);
     }
 }

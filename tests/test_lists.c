@@ -51,12 +51,12 @@ static bool is_before_a_cell(const enf_file_view *view, const enf_file_triangle 
 
 static void check_lists(const char *path) {
     enf_build build = {0};
-    enf_image image = {0};
+    enf_build_image image = {0};
     enf_error error = {0};
     const enf_build_options options = {.clean = {.weld = -1, .plane_tolerance = -1}, .threads = 1};
     enf_status status = enf_soup_read(&build.soup, path, &error);
     if (!status) status = enf_build_run(&build, &options, &error);
-    if (!status) status = enf_image_make(&image, &build, "{}", &error);
+    if (!status) status = enf_build_image_make(&image, &build, "{}", &error);
     if (status) fail_msg("%s: %s", path, error.text);
     const enf_file_view *view = &image.view;
     bool *is_listed = calloc((size_t)view->triangle_count + 1, sizeof *is_listed);
@@ -70,7 +70,7 @@ static void check_lists(const char *path) {
     }
     assert_true(listed > 0);
     free(is_listed);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
     enf_build_free(&build);
 }
 

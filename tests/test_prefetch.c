@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is fetched ahead, against a slow search; and that no advice about pages changes what is read.
+// What is fetched ahead, against a slow search; and which pages loading and dropping cells leaves in memory.
 #include "run_worlds.h"
 
 #include "base/hash.h"
@@ -159,35 +159,199 @@ static void nonsense_has_no_list(void **state) {
     free_scene(&s);
 }
 
-static uint64_t advise_all(const enf_world *world) {
-    const enf_file_view *view = enf_world_file(world);
-    for (int32_t i = -1; i <= view->cell_count; i++) enf_world_advise_cell(world, i, true);
-    for (int32_t i = -1; i <= view->cell_count; i++) enf_world_advise_cell(world, i, false);
-    return enf_hash64(view->bytes, view->size, 0);
+// --- loading and dropping
+// ---------------------------------------------------------------------------------------------------
+
+typedef struct streamed {
+    enf_world *world;
+    const enf_file_view *view;
+    enf_stream *stream;
+    bool *loaded; ///< per cell
+    size_t page, page_count;
+    unsigned sum;             ///< of what was read
+    uint8_t *inner;           ///< per page: has geometry only
+    uint8_t *wanted, *before; ///< per page: used by a loaded cell; and that before the latest change
+} streamed;
+
+/// Reads an element, too.
+static void want(streamed *s, const void *start, size_t size) {
+    const volatile uint8_t *bytes = start;
+    size_t offset = (size_t)((const uint8_t *)start - s->view->bytes);
+    s->wanted[offset / s->page] = s->wanted[(offset + size - 1) / s->page] = 1;
+    s->sum += bytes[0] + bytes[size - 1];
 }
 
-static void advice_changes_no_byte(void **state) {
+/// The pages of the loaded cells, the plain way; and reads all that is on them.
+static void use_loaded(streamed *s) {
+    const enf_file_view *view = s->view;
+    memcpy(s->before, s->wanted, s->page_count);
+    memset(s->wanted, 0, s->page_count);
+    for (int32_t cell = 0; cell < view->cell_count; cell++) {
+        if (!s->loaded[cell]) continue;
+        const enf_file_cell *about = &view->cells[cell];
+        for (int32_t i = 0; i < about->triangle_count; i++) {
+            const int32_t *at = &view->cell_triangles[about->triangle_first + i];
+            const enf_file_triangle *triangle = &view->triangles[*at];
+            want(s, at, sizeof *at);
+            want(s, triangle, sizeof *triangle);
+            for (int k = 0; k < 3; k++) {
+                want(s, view->render_points[triangle->point[k]], sizeof *view->render_points);
+                if (triangle->normal[k] >= 0)
+                    want(s, view->render_normals[triangle->normal[k]], sizeof *view->render_normals);
+                if (triangle->texcoord[k] >= 0)
+                    want(s, view->render_texcoords[triangle->texcoord[k]], sizeof *view->render_texcoords);
+            }
+        }
+    }
+}
+
+/// Is a page of the file in this process's memory? -1 if the system doesn't tell.
+static int has_page(const streamed *s, size_t page) {
+    FILE *map = fopen("/proc/self/pagemap", "rb");
+    uint64_t entry = 0, number = (uint64_t)((uintptr_t)s->view->bytes / s->page + page);
+    bool known = map && fseek(map, (long)(8 * number), SEEK_SET) == 0 && fread(&entry, 8, 1, map) == 1;
+    if (map) fclose(map);
+    return known ? (int)(entry >> 63) : -1;
+}
+
+static void find_inner(streamed *s, const void *start, int64_t count, size_t size) {
+    size_t first = (size_t)((const uint8_t *)start - s->view->bytes), end = first + (size_t)count * size;
+    for (size_t i = 0; i < s->page_count; i++)
+        if (i * s->page >= first && (i + 1) * s->page <= end) s->inner[i] = 1;
+}
+
+/// Is nothing left of the geometry in this process's memory?
+static void expect_none(const streamed *s) {
+    for (size_t i = 0; i < s->page_count; i++)
+        if (s->inner[i]) assert_true(has_page(s, i) <= 0);
+}
+
+static streamed open_stream(const char *path) {
+    streamed s = {.page = (size_t)sysconf(_SC_PAGESIZE)};
+    enf_open_options options = {.size = sizeof options, .mode = ENF_OPEN_LAZY};
+    assert_int_equal(enf_world_open_path(&s.world, path, &options, NULL), ENF_OK);
+    assert_int_equal(enf_stream_create(&s.stream, s.world, NULL), ENF_OK);
+    s.view = enf_world_file(s.world);
+    assert_true(s.view->has_geometry);
+    s.page_count = s.view->size / s.page + 1;
+    s.loaded = calloc((size_t)s.view->cell_count + 1, sizeof *s.loaded);
+    s.inner = calloc(s.page_count, 1);
+    s.wanted = calloc(s.page_count, 1);
+    s.before = calloc(s.page_count, 1);
+    assert_true(s.loaded && s.inner && s.wanted && s.before);
+    const enf_file_view *view = s.view;
+    find_inner(&s, view->render_points, view->render_point_count, sizeof *view->render_points);
+    find_inner(&s, view->render_normals, view->render_normal_count, sizeof *view->render_normals);
+    find_inner(&s, view->render_texcoords, view->render_texcoord_count, sizeof *view->render_texcoords);
+    find_inner(&s, view->triangles, view->triangle_count, sizeof *view->triangles);
+    find_inner(&s, view->cell_triangles, view->cell_triangle_count, sizeof *view->cell_triangles);
+    expect_none(&s); // the check has read everything
+    return s;
+}
+
+static void close_stream(streamed *s) {
+    enf_stream_free(s->stream);
+    enf_world_close(s->world);
+    free(s->loaded);
+    free(s->inner);
+    free(s->wanted);
+    free(s->before);
+}
+
+/// Loads and drops random cells. Returns how many pages of the process were given back.
+static int64_t load_and_drop(streamed *s, int changes, uint64_t *seed) {
+    int64_t gone = 0;
+    for (int n = 0; n < changes; n++) {
+        int32_t cell = (int32_t)(run_random(seed) % (uint64_t)s->view->cell_count);
+        bool is_load = run_random_share(seed) < 0.05;
+        bool changes_it = s->loaded[cell] != is_load;
+        s->loaded[cell] = is_load;
+        if (is_load) {
+            assert_true(enf_stream_load(s->stream, cell) == changes_it);
+            assert_false(enf_stream_load(s->stream, cell));
+            use_loaded(s);
+            continue;
+        }
+        use_loaded(s); // all that is about to go has been read
+        assert_true(enf_stream_drop(s->stream, cell) == changes_it);
+        assert_false(enf_stream_drop(s->stream, cell));
+        for (size_t i = 0; i < s->page_count; i++) {
+            int has = s->before[i] && s->inner[i] ? has_page(s, i) : -1;
+            if (has < 0) continue;
+            assert_int_equal(has, s->wanted[i]);
+            gone += !has;
+        }
+    }
+    return gone;
+}
+
+/// At least so many pages are to be given back on the way.
+static void check_streaming(const run_world *w, int least, uint64_t *seed) {
+    uint64_t hash = enf_hash64(w->bytes, w->size, 0);
+    char path[] = "stream-XXXXXX";
+    int file = mkstemp(path);
+    assert_true(file >= 0 && write(file, w->bytes, w->size) == (ssize_t)w->size);
+    close(file);
+    streamed s = open_stream(path);
+    bool tells = has_page(&s, 0) >= 0;
+    int64_t gone = load_and_drop(&s, 2000, seed);
+    if (tells) assert_true(gone > least);
+    if (!tells) print_message("this system does not tell which pages a process has\n");
+    for (int32_t i = 0; i < s.view->cell_count; i++) assert_true(enf_stream_drop(s.stream, i) == s.loaded[i]);
+    expect_none(&s);
+    assert_false(enf_stream_load(s.stream, -1) || enf_stream_load(s.stream, s.view->cell_count));
+    assert_false(enf_stream_drop(s.stream, -1) || enf_stream_drop(s.stream, s.view->cell_count));
+    assert_true(enf_hash64(s.view->bytes, s.view->size, 0) == hash);
+    close_stream(&s);
+    remove(path);
+}
+
+static void dropped_pages_are_gone_and_no_others(void **state) {
+    (void)state;
+    uint64_t seed = 9;
+    print_message("seed %llu\n", (unsigned long long)seed);
+    run_world w = run_world_grid(12, true, 9);
+    check_streaming(&w, 5, &seed);
+    run_world_free(&w);
+}
+
+/// In memory that dropped pages would not come back to.
+static void worlds_in_memory_stay(void **state) {
     (void)state;
     run_world w = run_world_grid(6, true, 9);
     uint64_t hash = enf_hash64(w.bytes, w.size, 0);
-    assert_true(advise_all(w.world) == hash); // in memory that dropped pages would not come back to
-    char path[] = "advise-XXXXXX";
-    int file = mkstemp(path);
-    assert_true(file >= 0 && write(file, w.bytes, w.size) == (ssize_t)w.size);
-    close(file);
-    enf_world *mapped;
-    assert_int_equal(enf_world_open_path(&mapped, path, NULL, NULL), ENF_OK);
-    assert_true(advise_all(mapped) == hash);
-    enf_world_close(mapped);
-    remove(path);
+    enf_stream *stream;
+    assert_int_equal(enf_stream_create(&stream, w.world, NULL), ENF_OK);
+    int32_t count = enf_world_file(w.world)->cell_count;
+    for (int32_t i = 0; i < count; i++) assert_true(enf_stream_load(stream, i));
+    for (int32_t i = 0; i < count; i++) assert_true(enf_stream_drop(stream, i));
+    assert_false(enf_stream_drop(stream, 0));
+    assert_true(enf_hash64(w.bytes, w.size, 0) == hash);
+    enf_stream_free(stream);
+    enf_stream_free(NULL);
     run_world_free(&w);
 }
+
+#ifdef ENFILADE_CLI
+static void a_compiled_world_streams(void **state) {
+    (void)state;
+    uint64_t seed = 10;
+    print_message("seed %llu\n", (unsigned long long)seed);
+    run_world w = run_world_compile(ENFILADE_MODELS_DIR "/office.obj");
+    check_streaming(&w, 100, &seed);
+    run_world_free(&w);
+}
+#endif
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lists_are_what_a_slow_search_finds),
         cmocka_unit_test(nonsense_has_no_list),
-        cmocka_unit_test(advice_changes_no_byte),
+        cmocka_unit_test(dropped_pages_are_gone_and_no_others),
+        cmocka_unit_test(worlds_in_memory_stay),
+#ifdef ENFILADE_CLI
+        cmocka_unit_test(a_compiled_world_streams),
+#endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

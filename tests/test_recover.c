@@ -307,15 +307,15 @@ static void a_turned_world_answers_in_the_users_coordinates(void **state) {
     print_message("seed %llu\n", (unsigned long long)seed);
     enf_soup soup;
     enf_build plain, turned;
-    enf_image plain_image, image;
+    enf_build_image plain_image, image;
     motion motion = random_rotation(&seed, ROUND_FLOAT);
     read_model(&soup, 0);
     build_soup(&plain, &soup);
     read_model(&soup, 0);
     move_soup(&soup, &motion);
     build_soup(&turned, &soup);
-    assert_int_equal(enf_image_make(&plain_image, &plain, NULL, NULL), ENF_OK);
-    assert_int_equal(enf_image_make(&image, &turned, NULL, NULL), ENF_OK);
+    assert_int_equal(enf_build_image_make(&plain_image, &plain, NULL, NULL), ENF_OK);
+    assert_int_equal(enf_build_image_make(&image, &turned, NULL, NULL), ENF_OK);
     assert_non_null(image.view.turn);
     assert_null(plain_image.view.turn);
     const enf_file_frame *box = plain_image.view.frame;
@@ -340,8 +340,8 @@ static void a_turned_world_answers_in_the_users_coordinates(void **state) {
         for (int a = 0; a < 3; a++) square += pow(at[a] - image.view.portal_vertices[i][a], 2);
         assert_true(sqrt(square) <= 2 * turned.mesh.plane_tolerance);
     }
-    enf_image_free(&plain_image);
-    enf_image_free(&image);
+    enf_build_image_free(&plain_image);
+    enf_build_image_free(&image);
     enf_build_free(&plain);
     enf_build_free(&turned);
 }

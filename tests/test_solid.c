@@ -25,7 +25,7 @@ static void check_kinds(const char *path, const char *name, const cli_brushes *a
     static const char *const exclude[] = {"*liquid*"};
     enf_build build = {0};
     enf_error error = {0};
-    enf_image image;
+    enf_build_image image;
     if (enf_soup_read(&build.soup, path, &error) != ENF_OK) fail_msg("%s", error.text);
     if (!with_spawns) build.soup.spawn_count = 0;
     enf_build_options options = pipeline_options();
@@ -34,7 +34,7 @@ static void check_kinds(const char *path, const char *name, const cli_brushes *a
     options.keep = ENF_KEEP_ALL;
     options.stop = (enf_stop){.rule = ENF_STOP_WEIGHT, .weight = 1};
     pipeline_build(&build, &options);
-    if (enf_image_make(&image, &build, NULL, &error) != ENF_OK) fail_msg("%s", error.text);
+    if (enf_build_image_make(&image, &build, NULL, &error) != ENF_OK) fail_msg("%s", error.text);
     uint64_t seed = 11;
     int wrong = 0, asked = 0, solid = 0;
     for (int i = 0; i < points_per_level(); i++) {
@@ -54,7 +54,7 @@ static void check_kinds(const char *path, const char *name, const cli_brushes *a
                   asked, solid, wrong);
     assert_int_equal(wrong, 0);
     assert_true(solid > 0);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
     enf_build_free(&build);
 }
 

@@ -44,19 +44,19 @@ static void every_soup_passes_check_and_oracles(void **state) {
 }
 
 /// Overlapping boxes, compiled.
-static void compile_boxes(enf_stress_case *made, enf_build *build, enf_image *image) {
+static void compile_boxes(enf_stress_case *made, enf_build *build, enf_build_image *image) {
     enf_error error = {0};
     assert_int_equal(enf_stress_make(made, 0, 2, &error), ENF_OK);
     enf_build_options options = enf_stress_build_options(made, 2, 0);
     *build = (enf_build){.soup = made->soup};
     if (enf_build_run(build, &options, &error) != ENF_OK) fail_msg("%s", error.text);
     made->soup = build->soup;
-    if (enf_image_make(image, build, NULL, &error) != ENF_OK) fail_msg("%s", error.text);
+    if (enf_build_image_make(image, build, NULL, &error) != ENF_OK) fail_msg("%s", error.text);
 }
 
-static void free_boxes(enf_stress_case *made, enf_build *build, enf_image *image) {
+static void free_boxes(enf_stress_case *made, enf_build *build, enf_build_image *image) {
     memset(&build->soup, 0, sizeof build->soup);
-    enf_image_free(image);
+    enf_build_image_free(image);
     enf_build_free(build);
     enf_stress_case_free(made);
 }
@@ -65,7 +65,7 @@ static void oracles_notice_what_is_wrong(void **state) {
     (void)state;
     enf_stress_case made;
     enf_build build;
-    enf_image image;
+    enf_build_image image;
     compile_boxes(&made, &build, &image);
     const enf_file_view *view = &image.view;
     enf_stress_verdict verdict = {0};

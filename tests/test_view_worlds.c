@@ -74,7 +74,7 @@ static void choose_on_wall(view_check *check, int kind, double point[3]) {
 
 static enf_world *open_build(enf_build *build) {
     char path[] = "view-XXXXXX";
-    enf_image image;
+    enf_build_image image;
     enf_visibility visibility;
     enf_error error = {0};
     enf_world *world = NULL;
@@ -83,7 +83,7 @@ static enf_world *open_build(enf_build *build) {
     assert_true(file >= 0);
     close(file);
     pipeline_build(build, &options);
-    enf_status status = enf_image_make(&image, build, "{}", &error);
+    enf_status status = enf_build_image_make(&image, build, "{}", &error);
     const enf_visibility_options ladder = {.method = ENF_METHOD_HOURGLASS, .threads = 1};
     if (!status) status = enf_world_pvs_add(&image, &ladder, NULL, &visibility, &error);
     if (!status) status = enf_view_save(&image.view, path, &error);
@@ -91,7 +91,7 @@ static enf_world *open_build(enf_build *build) {
     remove(path);
     if (status) fail_msg("%s", error.text);
     enf_visibility_free(&visibility);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
     enf_build_free(build);
     return world;
 }

@@ -20,7 +20,7 @@
 
 typedef struct world {
     enf_build build;
-    enf_image image;
+    enf_build_image image;
     enf_world_air air;
 } world;
 
@@ -30,7 +30,7 @@ static void compile(world *world, const char *path) {
     memset(world, 0, sizeof *world);
     enf_status status = enf_soup_read(&world->build.soup, path, &error);
     if (!status) status = enf_build_run(&world->build, &options, &error);
-    if (!status) status = enf_image_make(&world->image, &world->build, "{}", &error);
+    if (!status) status = enf_build_image_make(&world->image, &world->build, "{}", &error);
     if (!status) status = enf_world_air_make(&world->air, &world->image.view, false, &error);
     if (status) fail_msg("%s: %s", path, error.text);
 }
@@ -53,7 +53,7 @@ static void make(world *world, const char *name, const char *text) {
 
 static void drop(world *world) {
     enf_world_air_free(&world->air);
-    enf_image_free(&world->image);
+    enf_build_image_free(&world->image);
     enf_build_free(&world->build);
 }
 

@@ -28,7 +28,7 @@ static bool covers(const enf_view_entry *entry, double x, double y) {
     return true;
 }
 
-static bool has_chain(const enf_visible *visible, int32_t space, const scene_ray *ray) {
+bool scene_has_chain(const enf_visible *visible, int32_t space, const scene_ray *ray) {
     for (int32_t i = ray->chain_count; i-- > 0; space = visible->spaces[space].parent)
         if (space <= 0 || visible->spaces[space].portal != ray->chain[i]) return false;
     return space == 0;
@@ -39,7 +39,7 @@ static void expect(scene *scene, const scene_ray *ray) {
     scene->passed++;
     for (int32_t i = 0; i < scene->visible->entry_count; i++) {
         const enf_view_entry *entry = &scene->visible->entries[i];
-        if (entry->cell == ray->cell && has_chain(scene->visible, entry->space, ray) &&
+        if (entry->cell == ray->cell && scene_has_chain(scene->visible, entry->space, ray) &&
             covers(entry, ray->x, ray->y))
             return;
     }
@@ -139,6 +139,7 @@ void scene_follow(scene *scene, scene_ray ray) {
         }
         if (place.cell != ray.cell) return; // past an edge of cubes
         expect(scene, &ray);
+        if (scene->come_to) scene->come_to(scene->user, &ray, beyond);
     }
 }
 

@@ -24,6 +24,9 @@ typedef struct scene {
     const enf_visible *visible;
     int64_t passed, missed;
     bool cut_chains; ///< stop at SCENE_TRANSFORMS of them
+    /// Told of a point of a ray in each cell that it comes to; null: nobody is.
+    void (*come_to)(void *user, const scene_ray *ray, const double point[3]);
+    void *user;
 } scene;
 
 /// Follows a ray to its end; what it passes counts as passed, what the view has not as missed.
@@ -46,6 +49,9 @@ enf_camera scene_camera(const double eye[3], uint64_t *seed);
 
 /// The direction of a pixel: what the matrix takes to (x, y, 1).
 void scene_aim(const enf_camera *camera, double x, double y, double direction[3]);
+
+/// Is the space the one behind the portals that the ray passed?
+bool scene_has_chain(const enf_visible *visible, int32_t space, const scene_ray *ray);
 
 /// A random point in a cell; false if none was found.
 bool scene_eye(const run_world *world, uint64_t *seed, double eye[3], enf_place *place);

@@ -19,26 +19,26 @@ _Static_assert((int)ENF_KIND_AIR == (int)ENF_WORLD_AIR && (int)ENF_KIND_ROCK == 
                    (int)ENF_KIND_OUTSIDE == (int)ENF_WORLD_OUTSIDE,
                "kinds are written as they are");
 
-void *enf_image_new(enf_image *image, size_t count, size_t size) {
-    if (image->owned_count == ENF_IMAGE_OWNED_MAX) return NULL;
+void *enf_build_image_new(enf_build_image *image, size_t count, size_t size) {
+    if (image->owned_count == ENF_BUILD_IMAGE_OWNED_MAX) return NULL;
     void *memory = enf_array_zeroed(count, size);
     if (memory) image->owned[image->owned_count++] = memory;
     return memory;
 }
 
-void enf_image_own(enf_image *image, void *memory) {
-    if (image->owned_count < ENF_IMAGE_OWNED_MAX)
+void enf_build_image_own(enf_build_image *image, void *memory) {
+    if (image->owned_count < ENF_BUILD_IMAGE_OWNED_MAX)
         image->owned[image->owned_count++] = memory;
     else
         free(memory);
 }
 
-void enf_image_free(enf_image *image) {
+void enf_build_image_free(enf_build_image *image) {
     for (int i = 0; i < image->owned_count; i++) free(image->owned[i]);
-    *image = (enf_image){0};
+    *image = (enf_build_image){0};
 }
 
-bool enf_image_add_string(enf_image_strings *strings, const char *text, uint32_t *offset) {
+bool enf_build_image_add_string(enf_build_image_strings *strings, const char *text, uint32_t *offset) {
     size_t length = strlen(text) + 1;
     if (length > UINT32_MAX - strings->count) return false;
     if (!enf_array_reserve(strings->bytes, strings->capacity, strings->count + length)) return false;
@@ -133,10 +133,10 @@ static bool fill_empty(enf_file_view *view) {
 // --- Provenance, frame, regions
 // ----------------------------------------------------------------------------------
 
-static enf_status make_provenance(enf_image *image, const enf_build *build, const char *options,
-                                  enf_image_strings *strings, enf_error *error) {
-    enf_file_provenance *made = enf_image_new(image, 1, sizeof *made);
-    if (!made || !enf_image_add_string(strings, options ? options : "", &made->options))
+static enf_status make_provenance(enf_build_image *image, const enf_build *build, const char *options,
+                                  enf_build_image_strings *strings, enf_error *error) {
+    enf_file_provenance *made = enf_build_image_new(image, 1, sizeof *made);
+    if (!made || !enf_build_image_add_string(strings, options ? options : "", &made->options))
         return enf_fail_memory(error, "the provenance");
     const uint32_t version[3] = {ENF_VERSION_MAJOR, ENF_VERSION_MINOR, ENF_VERSION_PATCH};
     memcpy(made->version, version, sizeof version);
@@ -190,8 +190,8 @@ static void choose_locate_grid(enf_file_frame *out, double largest) {
     out->locate_rounding = 16 / out->locate_scale;
 }
 
-static enf_status make_frame(enf_image *image, const enf_build *build, enf_error *error) {
-    enf_file_frame *out = enf_image_new(image, 1, sizeof *out);
+static enf_status make_frame(enf_build_image *image, const enf_build *build, enf_error *error) {
+    enf_file_frame *out = enf_build_image_new(image, 1, sizeof *out);
     if (!out) return enf_fail_memory(error, "the frame");
     const enf_frame *frame = &build->mesh.frame;
     out->step = frame->step;
@@ -202,7 +202,7 @@ static enf_status make_frame(enf_image *image, const enf_build *build, enf_error
     }
     out->handedness = frame->handedness;
     if (frame->is_turned) {
-        enf_file_turn *turn = enf_image_new(image, 1, sizeof *turn);
+        enf_file_turn *turn = enf_build_image_new(image, 1, sizeof *turn);
         if (!turn) return enf_fail_memory(error, "the frame");
         memcpy(turn->rows, frame->turn, sizeof turn->rows);
         image->view.turn = turn;
@@ -224,10 +224,10 @@ static enf_status make_frame(enf_image *image, const enf_build *build, enf_error
     return ENF_OK;
 }
 
-static enf_status make_regions(enf_image *image, const enf_build *build, enf_error *error) {
+static enf_status make_regions(enf_build_image *image, const enf_build *build, enf_error *error) {
     const enf_regions *regions = &build->regions;
     double step = build->mesh.frame.step;
-    enf_file_region *out = enf_image_new(image, (size_t)regions->region_count, sizeof *out);
+    enf_file_region *out = enf_build_image_new(image, (size_t)regions->region_count, sizeof *out);
     if (!out) return enf_fail_memory(error, "the regions");
     for (int32_t i = 0; i < regions->region_count; i++) {
         out[i].volume = regions->volume[i] * step * step * step;
@@ -244,11 +244,11 @@ static enf_status make_regions(enf_image *image, const enf_build *build, enf_err
     return ENF_OK;
 }
 
-static enf_status make_spawns(enf_image *image, const enf_build *build, enf_error *error) {
+static enf_status make_spawns(enf_build_image *image, const enf_build *build, enf_error *error) {
     const enf_regions *regions = &build->regions;
-    enf_file_spawn *spawns = enf_image_new(image, (size_t)regions->spawn_count, sizeof *spawns);
+    enf_file_spawn *spawns = enf_build_image_new(image, (size_t)regions->spawn_count, sizeof *spawns);
     int32_t leak_count = regions->leak ? regions->leak_point_count : 0;
-    double(*leak)[3] = enf_image_new(image, (size_t)leak_count, sizeof *leak);
+    double(*leak)[3] = enf_build_image_new(image, (size_t)leak_count, sizeof *leak);
     if (!spawns || !leak) return enf_fail_memory(error, "the spawn points");
     for (int32_t i = 0; i < regions->spawn_count; i++) {
         if (i < (int64_t)build->soup.spawn_count) // the input's own numbers, which the grid may not hold
@@ -307,8 +307,8 @@ static void add_fine_cell(enf_file_cell *cell, const enf_build *build, int32_t f
     }
 }
 
-static enf_status make_cells(enf_image *image, const enf_build *build, enf_error *error) {
-    enf_file_cell *cells = enf_image_new(image, (size_t)build->cell_count, sizeof *cells);
+static enf_status make_cells(enf_build_image *image, const enf_build *build, enf_error *error) {
+    enf_file_cell *cells = enf_build_image_new(image, (size_t)build->cell_count, sizeof *cells);
     if (!cells) return enf_fail_memory(error, "the cells");
     for (int32_t i = 0; i < build->cell_count; i++) empty_box(cells[i].box_min, cells[i].box_max);
     for (int32_t fine = 0; fine < build->complex.cell_count; fine++) {
@@ -427,7 +427,7 @@ static void add_opening(portal_writer *writer, int32_t opening) {
     }
 }
 
-static enf_status make_portals(enf_image *image, const enf_build *build, enf_error *error) {
+static enf_status make_portals(enf_build_image *image, const enf_build *build, enf_error *error) {
     const enf_portals *portals = &build->portals;
     size_t loops = (size_t)portals->polygons.count, openings = (size_t)portals->opening_count;
     size_t corners = portals->polygons.offset ? (size_t)portals->polygons.offset[loops] : 0;
@@ -435,9 +435,9 @@ static enf_status make_portals(enf_image *image, const enf_build *build, enf_err
         return enf_fail(error, ENF_NO_RESOURCES,
                         "the world has too many portals for a file; stop decimation later");
     portal_writer writer = {.build = build};
-    writer.portals = enf_image_new(image, 2 * openings, sizeof *writer.portals);
-    writer.polygons = enf_image_new(image, 2 * loops, sizeof *writer.polygons);
-    writer.vertices = enf_image_new(image, 2 * corners, sizeof *writer.vertices);
+    writer.portals = enf_build_image_new(image, 2 * openings, sizeof *writer.portals);
+    writer.polygons = enf_build_image_new(image, 2 * loops, sizeof *writer.polygons);
+    writer.vertices = enf_build_image_new(image, 2 * corners, sizeof *writer.vertices);
     if (!writer.portals || !writer.polygons || !writer.vertices) return enf_fail_memory(error, "the portals");
     for (int32_t i = 0; i < portals->opening_count; i++) add_opening(&writer, i);
     enf_file_view *view = &image->view;
@@ -451,10 +451,10 @@ static enf_status make_portals(enf_image *image, const enf_build *build, enf_err
 }
 
 /// The portals that lead out of each cell: count, prefix sum, fill.
-static enf_status make_cell_portals(enf_image *image, enf_error *error) {
+static enf_status make_cell_portals(enf_build_image *image, enf_error *error) {
     enf_file_view *view = &image->view;
     enf_file_cell *cells = (enf_file_cell *)view->cells; // the image's own
-    int32_t *list = enf_image_new(image, (size_t)view->portal_count, sizeof *list), sum = 0;
+    int32_t *list = enf_build_image_new(image, (size_t)view->portal_count, sizeof *list), sum = 0;
     if (!list) return enf_fail_memory(error, "the portals of cells");
     for (int32_t i = 0; i < view->portal_count; i++) cells[view->portals[i].from].portal_count++;
     for (int32_t i = 0; i < view->cell_count; i++) {
@@ -490,8 +490,8 @@ static enf_status check_build(const enf_build *build, enf_error *error) {
                 : enf_fail(error, ENF_CHECK_FAILED, "the compiled world does not hold together (a bug)");
 }
 
-static enf_status fill_image(enf_image *image, const enf_build *build, const char *options,
-                             enf_image_strings *strings, enf_error *error) {
+static enf_status fill_image(enf_build_image *image, const enf_build *build, const char *options,
+                             enf_build_image_strings *strings, enf_error *error) {
     enf_status status = check_build(build, error);
     if (status) return status;
     lend_arrays(&image->view, build);
@@ -502,35 +502,36 @@ static enf_status fill_image(enf_image *image, const enf_build *build, const cha
     if (!status) status = make_cells(image, build, error);
     if (!status) status = make_portals(image, build, error);
     if (!status) status = make_cell_portals(image, error);
-    if (!status) status = enf_image_neighbours(image, error);
-    if (!status) status = enf_image_boxes(image, error);
-    if (!status) status = enf_image_start(image, error);
-    if (!status) status = enf_image_draw(image, build, strings, error);
-    if (!status) status = enf_image_sight(image, build, error);
+    if (!status) status = enf_build_image_neighbours(image, error);
+    if (!status) status = enf_build_image_boxes(image, error);
+    if (!status) status = enf_build_image_start(image, error);
+    if (!status) status = enf_build_image_draw(image, build, strings, error);
+    if (!status) status = enf_build_image_sight(image, build, error);
     return status;
 }
 
-enf_status enf_image_make(enf_image *image, const enf_build *build, const char *options, enf_error *error) {
-    *image = (enf_image){0};
-    enf_image_strings strings = {0};
+enf_status enf_build_image_make(enf_build_image *image, const enf_build *build, const char *options,
+                                enf_error *error) {
+    *image = (enf_build_image){0};
+    enf_build_image_strings strings = {0};
     enf_status status = fill_image(image, build, options, &strings, error);
     image->view.strings = strings.bytes;
     image->view.string_bytes = (int64_t)strings.count;
-    enf_image_own(image, strings.bytes);
+    enf_build_image_own(image, strings.bytes);
     enf_error wrong = {0};
     if (!status && (!fill_empty(&image->view) || enf_view_check(&image->view, &wrong)))
         status =
             enf_fail(error, ENF_CHECK_FAILED, "the compiled world does not hold together (a bug): %.900s",
                      wrong.text[0] ? wrong.text : "an array is missing");
-    if (status) enf_image_free(image);
+    if (status) enf_build_image_free(image);
     return status;
 }
 
 enf_status enf_build_write(const enf_build *build, const char *options, const char *path, enf_error *error) {
-    enf_image image;
-    enf_status status = enf_image_make(&image, build, options, error);
+    enf_build_image image;
+    enf_status status = enf_build_image_make(&image, build, options, error);
     if (status) return status;
     status = enf_view_save(&image.view, path, error);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
     return status;
 }

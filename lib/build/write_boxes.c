@@ -220,12 +220,12 @@ static void close_inner_boxes(enf_file_box *boxes, int32_t count) {
     }
 }
 
-enf_status enf_image_boxes(enf_image *image, enf_error *error) {
+enf_status enf_build_image_boxes(enf_build_image *image, enf_error *error) {
     enf_file_view *view = &image->view;
     if (view->tetrahedron_count == 0) return ENF_OK;
     int32_t box_count = 2 * view->tetrahedron_count - 1;
     orders orders = {0};
-    enf_file_box *boxes = enf_image_new(image, (size_t)box_count, sizeof *boxes);
+    enf_file_box *boxes = enf_build_image_new(image, (size_t)box_count, sizeof *boxes);
     bool good = boxes && make_orders(&orders, view);
     if (good) lay_out(boxes, view, &orders);
     free_orders(&orders);

@@ -12,7 +12,7 @@
 #include <string.h>
 
 typedef struct drawer {
-    enf_image *image;
+    enf_build_image *image;
     const enf_build *build;
     enf_error *error;
 
@@ -423,22 +423,22 @@ static bool copy_points(drawer *d) {
 
 /// Normals and texture coordinates as read, without what is not a number.
 static double *copy_looks(drawer *d, const double *values, size_t count) {
-    double *copy = enf_image_new(d->image, count, sizeof *copy);
+    double *copy = enf_build_image_new(d->image, count, sizeof *copy);
     if (!copy) out_of_memory(d);
     for (size_t i = 0; copy && i < count; i++) copy[i] = finite_or_zero(values[i]);
     return copy;
 }
 
-static const uint32_t *add_names(drawer *d, char **names, size_t count, enf_image_strings *strings) {
-    uint32_t *offsets = enf_image_new(d->image, count, sizeof *offsets);
+static const uint32_t *add_names(drawer *d, char **names, size_t count, enf_build_image_strings *strings) {
+    uint32_t *offsets = enf_build_image_new(d->image, count, sizeof *offsets);
     for (size_t i = 0; offsets && i < count; i++) {
-        if (!enf_image_add_string(strings, names[i], &offsets[i])) offsets = NULL;
+        if (!enf_build_image_add_string(strings, names[i], &offsets[i])) offsets = NULL;
     }
     if (!offsets) out_of_memory(d);
     return offsets;
 }
 
-static void set_view(drawer *d, enf_image_strings *strings) {
+static void set_view(drawer *d, enf_build_image_strings *strings) {
     enf_file_view *view = &d->image->view;
     const enf_soup *soup = &d->build->soup;
     view->render_points = (void *)d->points;
@@ -458,13 +458,13 @@ static void set_view(drawer *d, enf_image_strings *strings) {
     view->has_geometry = true;
 }
 
-enf_status enf_image_draw(enf_image *image, const enf_build *build, enf_image_strings *strings,
-                          enf_error *error) {
+enf_status enf_build_image_draw(enf_build_image *image, const enf_build *build,
+                                enf_build_image_strings *strings, enf_error *error) {
     drawer d = {.image = image, .build = build, .error = error, .status = ENF_OK};
     if (copy_points(&d) && add_polygons(&d) && list_triangles(&d)) set_view(&d, strings);
-    enf_image_own(image, d.points);
-    enf_image_own(image, d.triangles);
-    enf_image_own(image, d.list);
+    enf_build_image_own(image, d.points);
+    enf_build_image_own(image, d.triangles);
+    enf_build_image_own(image, d.list);
     free(d.pieces_of);
     free(d.polygon_triangle);
     return d.status;

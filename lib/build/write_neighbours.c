@@ -99,11 +99,11 @@ static bool pair_all(const enf_file_view *view, const face_lists *lists, int32_t
     return good;
 }
 
-enf_status enf_image_neighbours(enf_image *image, enf_error *error) {
+enf_status enf_build_image_neighbours(enf_build_image *image, enf_error *error) {
     enf_file_view *view = &image->view;
     size_t count = (size_t)view->tetrahedron_count;
     if (count > INT32_MAX / 4) return enf_fail(error, ENF_NO_RESOURCES, "too many tetrahedra for one file");
-    int32_t(*next)[4] = enf_image_new(image, count, sizeof *next);
+    int32_t(*next)[4] = enf_build_image_new(image, count, sizeof *next);
     face_lists lists = {0};
     bool good = next && list_faces(view, &lists);
     for (size_t i = 0; good && i < count; i++) next[i][0] = next[i][1] = next[i][2] = next[i][3] = -1;

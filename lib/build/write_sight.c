@@ -24,7 +24,7 @@ typedef struct origin {
 } origin;
 
 typedef struct sighter {
-    enf_image *image;
+    enf_build_image *image;
     const enf_build *build;
     double scale;
     enf_file_sight sight;
@@ -311,7 +311,7 @@ static bool make_trees(sighter *s, enf_barrier_tree *walls, enf_barrier_tree *po
 
 static bool set_view(sighter *s, const enf_barrier_tree *walls, const enf_barrier_tree *portals) {
     enf_file_view *view = &s->image->view;
-    enf_file_sight *sight = enf_image_new(s->image, 1, sizeof *sight);
+    enf_file_sight *sight = enf_build_image_new(s->image, 1, sizeof *sight);
     if (!sight) return false;
     *sight = s->sight;
     view->sight = sight;
@@ -326,7 +326,7 @@ static bool set_view(sighter *s, const enf_barrier_tree *walls, const enf_barrie
     return true;
 }
 
-enf_status enf_image_sight(enf_image *image, const enf_build *build, enf_error *error) {
+enf_status enf_build_image_sight(enf_build_image *image, const enf_build *build, enf_error *error) {
     sighter s = {.image = image, .build = build, .scale = image->view.frame->locate_scale};
     enf_barrier_tree walls = {NULL, 0}, portals = {NULL, 0};
     bool good = find_extent(&s) && note_walls(&s) && note_details(&s);
@@ -335,9 +335,9 @@ enf_status enf_image_sight(enf_image *image, const enf_build *build, enf_error *
            set_view(&s, &walls, &portals);
     free(s.origins);
     free(s.boxes);
-    enf_image_own(image, s.barriers);
-    enf_image_own(image, s.vertices);
-    enf_image_own(image, walls.nodes);
-    enf_image_own(image, portals.nodes);
+    enf_build_image_own(image, s.barriers);
+    enf_build_image_own(image, s.vertices);
+    enf_build_image_own(image, walls.nodes);
+    enf_build_image_own(image, portals.nodes);
     return good ? ENF_OK : enf_fail_memory(error, "lines of sight");
 }

@@ -60,13 +60,13 @@ static void fill_bricks(const enf_file_start *start, const enf_file_view *view, 
     }
 }
 
-enf_status enf_image_start(enf_image *image, enf_error *error) {
+enf_status enf_build_image_start(enf_build_image *image, enf_error *error) {
     enf_file_view *view = &image->view;
-    enf_file_start *start = enf_image_new(image, 1, sizeof *start);
+    enf_file_start *start = enf_build_image_new(image, 1, sizeof *start);
     if (!start) return enf_fail_memory(error, "starts for point location");
     choose_bricks(start, view);
     int64_t count = (int64_t)start->count[0] * start->count[1] * start->count[2];
-    int32_t *tetrahedra = enf_image_new(image, (size_t)count, sizeof *tetrahedra);
+    int32_t *tetrahedra = enf_build_image_new(image, (size_t)count, sizeof *tetrahedra);
     if (!tetrahedra) return enf_fail_memory(error, "starts for point location");
     fill_bricks(start, view, tetrahedra);
     view->start = start;

@@ -6,6 +6,7 @@
 #include "run/shape.h"
 
 #include <math.h>
+#include <string.h>
 
 static enf_object handle_of(const enf_objects *objects, int32_t object) {
     return (enf_object){(uint32_t)object + 1, objects->slots[object].generation};
@@ -54,28 +55,82 @@ static bool is_first(const enf_objects *objects, const enf_query *query, int32_t
     return true;
 }
 
-int32_t enf_objects_in_cells(const enf_objects *objects, enf_query *query, const int32_t *cells,
-                             int32_t cell_count, enf_object *out, int32_t capacity) {
-    int32_t count = 0, nowhere = -1;
+/// Cells whose objects are listed, and the list. An enf_object_seen begins with the enf_object that it is
+/// about, so either is written.
+typedef struct listing {
+    const enf_objects *objects;
+    enf_query *query;
+    const int32_t *cells; ///< null: those of the entries, in one space
+    const enf_view_entry *entries;
+    int32_t cell_count, space;
+    char *out;
+    size_t size; ///< of an element of `out`
+    int32_t count, capacity;
+} listing;
+
+/// ENF_LIST_EVERYWHERE, which waits until the end, if it is none.
+static int32_t cell_at(const listing *l, int32_t position) {
+    if (l->cells) return l->cells[position];
+    const enf_view_entry *entry = &l->entries[position];
+    return entry->space == l->space ? entry->cell : ENF_LIST_EVERYWHERE;
+}
+
+/// The objects of a list that were in none before.
+static void put_list(listing *l, int32_t list, int32_t position) {
+    for (int32_t i = l->objects->lists[list].first; i >= 0; i = l->objects->links[i].behind) {
+        int32_t object = l->objects->links[i].object;
+        if (!is_first(l->objects, l->query, object, position)) continue;
+        enf_object_seen seen = {handle_of(l->objects, object), position, l->space};
+        if (l->count < l->capacity) memcpy(l->out + (size_t)l->count * l->size, &seen, l->size);
+        if (l->count < INT32_MAX) l->count++;
+    }
+}
+
+/// The objects of all cells; if there is a cell, or if the caller gave them, of ENF_LIST_EVERYWHERE, too.
+static void put_cells(listing *l) {
+    enf_query *query = l->query;
+    bool has_nowhere = false, has_any = l->cells != NULL;
     enf_query_begin(query);
     query->flooded_count = query->image_count = 0;
-    for (int32_t k = 0; k < cell_count; k++) {
-        if (cells[k] == ENF_LIST_NOWHERE && nowhere < 0) nowhere = k;
-        if (cells[k] < 0 || cells[k] >= objects->cell_count || enf_query_has(query, cells[k])) continue;
-        enf_query_mark(query, cells[k], k);
+    for (int32_t k = 0; k < l->cell_count; k++) {
+        int32_t cell = cell_at(l, k), list = enf_objects_list(l->objects, cell);
+        if (list < 0 || cell == ENF_LIST_EVERYWHERE) continue;
+        if (cell < 0 ? has_nowhere : enf_query_has(query, cell)) continue;
+        has_any = true;
+        if (cell < 0)
+            has_nowhere = true;
+        else
+            enf_query_mark(query, cell, k);
+        put_list(l, list, k);
     }
-    for (int32_t k = 0; k < cell_count; k++) {
-        int32_t list = cells[k] == ENF_LIST_EVERYWHERE ? -1 : enf_objects_list(objects, cells[k]);
-        if (list < 0 || (cells[k] == ENF_LIST_NOWHERE ? nowhere : query->first[cells[k]]) != k) continue;
-        for (int32_t i = objects->lists[list].first; i >= 0; i = objects->links[i].behind) {
-            int32_t object = objects->links[i].object;
-            if (!is_first(objects, query, object, k)) continue;
-            if (count < capacity) out[count] = handle_of(objects, object);
-            count++;
-        }
-    }
-    int32_t room = count < capacity ? capacity - count : 0;
-    return count + enf_objects_of_cell(objects, ENF_LIST_EVERYWHERE, room > 0 ? out + count : NULL, room);
+    if (has_any) put_list(l, enf_objects_list(l->objects, ENF_LIST_EVERYWHERE), -1);
+}
+
+int32_t enf_objects_in_cells(const enf_objects *objects, enf_query *query, const int32_t *cells,
+                             int32_t cell_count, enf_object *out, int32_t capacity) {
+    static const int32_t none[1];
+    listing l = {.objects = objects,
+                 .query = query,
+                 .cells = cell_count > 0 ? cells : none,
+                 .cell_count = cell_count,
+                 .out = (char *)out,
+                 .size = sizeof *out,
+                 .capacity = capacity};
+    put_cells(&l);
+    return l.count;
+}
+
+int32_t enf_objects_in_view(const enf_objects *objects, enf_query *query, const enf_visible *visible,
+                            enf_object_seen *out, int32_t capacity) {
+    listing l = {.objects = objects,
+                 .query = query,
+                 .entries = visible->entries,
+                 .cell_count = visible->entry_count,
+                 .out = (char *)out,
+                 .size = sizeof *out,
+                 .capacity = capacity};
+    for (; l.space < visible->space_count; l.space++) put_cells(&l);
+    return l.count;
 }
 
 bool enf_objects_meets(const enf_objects *objects, enf_object object, const double (*planes)[4],

@@ -231,10 +231,7 @@ static void relink(enf_objects *objects, int32_t object) {
 static void place(enf_objects *objects, int32_t object, const enf_shape *shape, int32_t hint) {
     enf_object_slot *slot = &objects->slots[object];
     enf_place place = enf_world_locate(objects->world, shape->centre, hint);
-    slot->shape = (enf_shape){.kind = shape->kind};
-    memcpy(slot->shape.centre, shape->centre, sizeof slot->shape.centre);
-    if (shape->kind == ENF_SHAPE_SPHERE) slot->shape.radius = shape->radius;
-    if (shape->kind == ENF_SHAPE_BOX) memcpy(slot->shape.half, shape->half, sizeof slot->shape.half);
+    slot->shape = *shape;
     slot->cell = place.cell;
     if (place.tetrahedron >= 0) slot->tetrahedron = place.tetrahedron;
     enf_query_flood(objects->query, NULL, place.cell, &slot->shape);
@@ -244,11 +241,6 @@ static void place(enf_objects *objects, int32_t object, const enf_shape *shape, 
         relink(objects, object);
 }
 
-static enf_status check_shape(const enf_shape *shape, enf_error *error) {
-    if (enf_shape_is_valid(shape)) return ENF_OK;
-    return enf_fail(error, ENF_BAD_USAGE, "a shape must be finite, and its size must not be negative");
-}
-
 static enf_status find(const enf_objects *objects, enf_object object, int32_t *number, enf_error *error) {
     *number = enf_objects_find(objects, object);
     if (*number >= 0) return ENF_OK;
@@ -256,10 +248,11 @@ static enf_status find(const enf_objects *objects, enf_object object, int32_t *n
                     (unsigned long)object.slot, (unsigned long)object.generation);
 }
 
-enf_status enf_objects_add(enf_objects *objects, const enf_shape *shape, uint64_t user,
+enf_status enf_objects_add(enf_objects *objects, const enf_shape *given, uint64_t user,
                            const enf_object *near, enf_object *object, enf_error *error) {
     *object = (enf_object){0, 0};
-    enf_status status = check_shape(shape, error);
+    enf_shape shape;
+    enf_status status = enf_shape_take(&shape, given, error);
     if (status) return status;
     int32_t number = objects->free_slot, close_by = near ? enf_objects_find(objects, *near) : -1;
     if (number < 0)
@@ -272,17 +265,18 @@ enf_status enf_objects_add(enf_objects *objects, const enf_shape *shape, uint64_
     slot->user = user;
     slot->tetrahedron = -1;
     slot->link_count = 0;
-    place(objects, number, shape, close_by >= 0 ? objects->slots[close_by].tetrahedron : -1);
+    place(objects, number, &shape, close_by >= 0 ? objects->slots[close_by].tetrahedron : -1);
     *object = (enf_object){(uint32_t)number + 1, slot->generation};
     return ENF_OK;
 }
 
-enf_status enf_objects_move(enf_objects *objects, enf_object object, const enf_shape *shape,
+enf_status enf_objects_move(enf_objects *objects, enf_object object, const enf_shape *given,
                             enf_error *error) {
     int32_t number;
+    enf_shape shape;
     enf_status status = find(objects, object, &number, error);
-    if (!status) status = check_shape(shape, error);
-    if (!status) place(objects, number, shape, objects->slots[number].tetrahedron);
+    if (!status) status = enf_shape_take(&shape, given, error);
+    if (!status) place(objects, number, &shape, objects->slots[number].tetrahedron);
     return status;
 }
 

@@ -5,6 +5,7 @@
 #include "run/query.h"
 
 #include "base/options.h"
+#include "run/affine.h"
 #include "run/instance.h"
 #include "run/open.h"
 #include "run/shape.h"
@@ -104,16 +105,6 @@ static void reach(enf_query *query, int32_t cell, int32_t portal, int32_t image)
     enf_query_mark(query, cell, query->flooded_count++);
 }
 
-/// outer * inner
-static void compose(const double outer[12], const double inner[12], double out[12]) {
-    for (int row = 0; row < 3; row++) {
-        const double *o = outer + 4 * row;
-        for (int column = 0; column < 4; column++)
-            out[4 * row + column] = o[0] * inner[column] + o[1] * inner[4 + column] +
-                                    o[2] * inner[8 + column] + (column == 3 ? o[3] : 0);
-    }
-}
-
 static void reach_transformed(enf_query *query, int32_t cell, int32_t portal, int32_t image,
                               const double matrix[12]) {
     if (query->image_count == query->images_max) {
@@ -121,7 +112,7 @@ static void reach_transformed(enf_query *query, int32_t cell, int32_t portal, in
         return;
     }
     enf_image *next = &query->images[query->image_count];
-    compose(matrix, query->images[image].matrix, next->matrix);
+    enf_affine_multiply(next->matrix, matrix, query->images[image].matrix);
     next->shape = enf_shape_image(&query->images[0].shape, next->matrix);
     if (!enf_shape_is_valid(&next->shape)) {
         query->complete = false; // too large for doubles
@@ -186,16 +177,13 @@ enf_status enf_query_cells(enf_query *query, const enf_instance *instance, int32
                            enf_error *error) {
     *reach = (enf_reach){0, 0, true};
     query->flooded_count = query->image_count = 0;
-    if (!enf_shape_is_valid(shape))
-        return enf_fail(error, ENF_BAD_USAGE, "a shape must be finite, and its size must not be negative");
+    enf_shape own;
+    enf_status status = enf_shape_take(&own, shape, error);
+    if (status) return status;
     if (start < -1 || start >= query->view->cell_count)
         return enf_fail(error, ENF_BAD_USAGE, "cell %ld: the world has cells 0 to %ld", (long)start,
                         (long)query->view->cell_count - 1);
-    if (start < 0) start = enf_world_locate(query->world, shape->centre, -1).cell;
-    enf_shape own = {.kind = shape->kind};
-    memcpy(own.centre, shape->centre, sizeof own.centre);
-    if (own.kind == ENF_SHAPE_SPHERE) own.radius = shape->radius;
-    if (own.kind == ENF_SHAPE_BOX) memcpy(own.half, shape->half, sizeof own.half);
+    if (start < 0) start = enf_world_locate(query->world, own.centre, -1).cell;
     enf_query_flood(query, instance, start, &own);
     for (int32_t i = 0; i < query->flooded_count && i < capacity; i++) {
         const enf_flooded *flooded = &query->flooded[i];

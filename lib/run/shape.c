@@ -2,19 +2,31 @@
 // Sizes, images and nesting of shapes.
 #include "run/shape.h"
 
+#include "run/vector.h"
+
+#include <float.h>
 #include <math.h>
+#include <string.h>
 
 #define ROUNDING \
     0x1p-40 // far above the rounding of a few dozen operations, far below any distance that counts
 
+static bool is_size(double size) {
+    return size >= 0 && size <= DBL_MAX;
+}
+
 bool enf_shape_is_valid(const enf_shape *shape) {
-    bool valid = shape->kind == ENF_SHAPE_SPHERE || shape->kind == ENF_SHAPE_BOX;
-    if (shape->kind == ENF_SHAPE_SPHERE) valid = valid && isfinite(shape->radius) && shape->radius >= 0;
-    for (int a = 0; a < 3; a++) {
-        valid = valid && isfinite(shape->centre[a]);
-        if (shape->kind == ENF_SHAPE_BOX) valid = valid && isfinite(shape->half[a]) && shape->half[a] >= 0;
-    }
-    return valid;
+    const double *half = shape->half;
+    return (unsigned)shape->kind <= ENF_SHAPE_BOX && enf_are_finite(shape->centre, 3) &&
+           is_size(shape->radius) && is_size(half[0]) && is_size(half[1]) && is_size(half[2]);
+}
+
+enf_status enf_shape_take(enf_shape *shape, const enf_shape *given, enf_error *error) {
+    *shape = *given;
+    if (shape->kind != ENF_SHAPE_SPHERE) shape->radius = 0;
+    if (shape->kind != ENF_SHAPE_BOX) memset(shape->half, 0, sizeof shape->half);
+    if (enf_shape_is_valid(shape)) return ENF_OK;
+    return enf_fail(error, ENF_BAD_USAGE, "a shape must be finite, and its size must not be negative");
 }
 
 double enf_shape_reach(const enf_shape *shape) {

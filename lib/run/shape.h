@@ -13,7 +13,10 @@ typedef struct enf_face {
     const double *cut; ///< null, or a plane: the polygon is what lies on its positive side
 } enf_face;
 
-/// Finite, and of no negative size.
+/// Takes a caller's shape: what its kind has no use for becomes 0. ENF_BAD_USAGE if it is not valid.
+enf_status enf_shape_take(enf_shape *shape, const enf_shape *given, enf_error *error);
+
+/// Finite, and of no negative size, also what its kind has no use for.
 bool enf_shape_is_valid(const enf_shape *shape);
 
 /// The radius of a sphere about the centre that holds the shape.

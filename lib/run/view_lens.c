@@ -31,23 +31,28 @@ bool enf_lens_pass(enf_view_lens *behind, const enf_view_lens *before, const dou
     return enf_lens_make(behind, eye, (const double(*)[3])rows);
 }
 
+static void make_unit(double v[3]) {
+    double length = sqrt(enf_dot(v, v));
+    for (int i = 0; i < 3; i++) v[i] /= length;
+}
+
 enf_camera enf_camera_look(const double eye[3], const double forward[3], const double up[3], double fov,
                            double aspect) {
     enf_camera camera = {.size = sizeof camera};
-    double f[3], r[3], u[3];
-    double length = sqrt(enf_dot(forward, forward)), tangent = tan(fov / 2);
-    for (int i = 0; i < 3; i++) f[i] = forward[i] / length;
-    for (int i = 0; i < 3; i++) r[i] = f[(i + 1) % 3] * up[(i + 2) % 3] - f[(i + 2) % 3] * up[(i + 1) % 3];
-    length = sqrt(enf_dot(r, r));
-    for (int i = 0; i < 3; i++) r[i] /= length;
-    for (int i = 0; i < 3; i++) u[i] = r[(i + 1) % 3] * f[(i + 2) % 3] - r[(i + 2) % 3] * f[(i + 1) % 3];
-    for (int i = 0; i < 3; i++) {
-        camera.eye[i] = eye[i];
-        camera.matrix[i] = r[i] / (tangent * aspect);
-        camera.matrix[4 + i] = u[i] / tangent;
-        camera.matrix[8 + i] = camera.matrix[12 + i] = f[i];
+    double tangent = tan(fov / 2), axes[3][3],
+           scales[3] = {tangent * aspect, tangent, 1}; // right, up, forward
+    memcpy(axes[2], forward, sizeof axes[2]);
+    make_unit(axes[2]);
+    enf_cross(axes[2], up, axes[0]);
+    make_unit(axes[0]);
+    enf_cross(axes[0], axes[2], axes[1]);
+    memcpy(camera.eye, eye, sizeof camera.eye);
+    for (int i = 0; i < 4; i++) {
+        double *row = camera.matrix + 4 * i;
+        const int axis = i < 2 ? i : 2;
+        for (int k = 0; k < 3; k++) row[k] = axes[axis][k] / scales[axis];
+        row[3] = -enf_dot(row, eye);
     }
-    for (int i = 0; i < 4; i++) camera.matrix[4 * i + 3] = -enf_dot(camera.matrix + 4 * i, eye);
     camera.matrix[11] -= 1; // z / w goes from the near plane, at depth 1, to infinity
     return camera;
 }

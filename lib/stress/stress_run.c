@@ -90,9 +90,9 @@ static bool judge_oracles(enf_stress_case *made, const enf_file_view *view, int 
 
 static void judge_world(enf_stress_case *made, const enf_build *build, const enf_stress_options *harness,
                         enf_stress_result *result) {
-    enf_image image;
+    enf_build_image image;
     enf_error error = {0};
-    enf_status status = enf_image_make(&image, build, NULL, &error);
+    enf_status status = enf_build_image_make(&image, build, NULL, &error);
     if (status) {
         end_run(result, status == ENF_NO_RESOURCES ? ENF_STRESS_HARNESS : ENF_STRESS_BROKEN, error.text);
         return;
@@ -105,7 +105,7 @@ static void judge_world(enf_stress_case *made, const enf_build *build, const enf
     else if (judge_check(&back, result) && judge_oracles(made, &back, harness->points, result))
         result->outcome = ENF_STRESS_FINE;
     free(bytes);
-    enf_image_free(&image);
+    enf_build_image_free(&image);
 }
 
 // ---------------------------------------------------------------------------------------------- runs

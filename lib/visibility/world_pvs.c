@@ -37,13 +37,13 @@ static uint8_t *code_rows(const enf_pvs *pvs, int64_t *offsets) {
     return NULL;
 }
 
-static enf_status add_rows(enf_image *image, const enf_visibility *visibility, enf_error *error) {
+static enf_status add_rows(enf_build_image *image, const enf_visibility *visibility, enf_error *error) {
     const enf_pvs *pvs = &visibility->pvs;
-    enf_file_pvs *head = enf_image_new(image, 1, sizeof *head);
-    int64_t *offsets = enf_image_new(image, (size_t)pvs->cell_count + 1, sizeof *offsets);
+    enf_file_pvs *head = enf_build_image_new(image, 1, sizeof *head);
+    int64_t *offsets = enf_build_image_new(image, (size_t)pvs->cell_count + 1, sizeof *offsets);
     uint8_t *rows = head && offsets ? code_rows(pvs, offsets) : NULL;
     if (!rows) return enf_fail_memory(error, "the visible set");
-    enf_image_own(image, rows);
+    enf_build_image_own(image, rows);
     *head = (enf_file_pvs){.method = (uint32_t)visibility->method, .pairs = enf_pvs_pairs(pvs)};
     image->view.pvs = head;
     image->view.pvs_offset = offsets;
@@ -52,7 +52,7 @@ static enf_status add_rows(enf_image *image, const enf_visibility *visibility, e
     return ENF_OK;
 }
 
-enf_status enf_world_pvs_add(enf_image *image, const enf_visibility_options *options, bool *left_out,
+enf_status enf_world_pvs_add(enf_build_image *image, const enf_visibility_options *options, bool *left_out,
                              enf_visibility *visibility, enf_error *error) {
     enf_world_air air = {0};
     *visibility = (enf_visibility){0};

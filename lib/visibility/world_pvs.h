@@ -13,7 +13,7 @@ enum { ENF_WORLD_PVS_OPENINGS = 20000 };
 /// Finds what the image's cells see and adds it to the image. *visibility is overwritten; free it in any
 /// case. What a cell sees is never too little. `left_out`: null, or a world in which they would
 /// take longer than that is left as it is, and it is told so.
-enf_status enf_world_pvs_add(enf_image *image, const enf_visibility_options *options, bool *left_out,
+enf_status enf_world_pvs_add(enf_build_image *image, const enf_visibility_options *options, bool *left_out,
                              enf_visibility *visibility, enf_error *error);
 
 #endif

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Moving objects: which of them are in a cell, and in which cells one is. Every cell has a list of the
 // objects that touch it, so that what a traversal finds visible is drawn, and nothing else is looked at (the
-// thesis, 3.3.4). An object is a sphere or a box; it is in all cells that enf_query_cells finds for that
-// shape in the world as it was compiled. Doors and transforms do not matter here: an object that stands in a
-// doorway is in both rooms, and the door decides what is seen of them. So the lists never grow stale when a
-// door moves.
+// thesis, 3.3.4): enf_objects_in_view. An object is a sphere or a box; it is in all cells that
+// enf_query_cells finds for that shape in the world as it was compiled. Doors and transforms do not matter
+// here: an object that stands in a doorway is in both rooms, and the door decides what is seen of them. So
+// the lists never grow stale when a door moves.
 //
 // Two lists belong to no cell. ENF_LIST_NOWHERE holds the objects whose centre lies in no cell;
 // ENF_LIST_EVERYWHERE those that touch more cells than there were links left for. The latter are part of
@@ -17,6 +17,7 @@
 #define ENFILADE_OBJECTS_H
 
 #include "enfilade/query.h"
+#include "enfilade/view.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -93,6 +94,24 @@ ENF_API int32_t enf_objects_of_cell(const enf_objects *objects, int32_t cell, en
 /// world, lends its scratch memory; its latest answer is gone then.
 ENF_API int32_t enf_objects_in_cells(const enf_objects *objects, enf_query *query, const int32_t *cells,
                                      int32_t cell_count, enf_object *out, int32_t capacity);
+
+/// An object in a cell that a view lists.
+typedef struct enf_object_seen {
+    enf_object object;
+    int32_t entry; ///< the first one, in the view's list, whose cell the object is in; -1: everywhere
+    int32_t space; ///< in which it is seen: visible->spaces[space].to_camera carries it to where the camera
+                   ///< shows it, and .plane cuts off what lies before the portal
+} enf_object_seen;
+
+/// The objects of the cells that a view has listed, as far as they fit: once for each space in which one of
+/// their cells is listed. So an object that stands before a mirror comes twice, in the world itself and in
+/// the mirror's space, if the view lists its cell in both; and one in the room to which a portal leads comes
+/// in the space behind that portal. Returns how many there are. Spaces come in their order; in each, objects
+/// in the order of the entries, then, if there was an entry, those of ENF_LIST_EVERYWHERE. An object is where
+/// it was put: one that reaches into a portal that transforms has no part beyond it (enf_query_cells finds
+/// its image there). `visible`: of a view of the same world. `query` is lent as above.
+ENF_API int32_t enf_objects_in_view(const enf_objects *objects, enf_query *query, const enf_visible *visible,
+                                    enf_object_seen *out, int32_t capacity);
 
 /// False if the object lies wholly behind one of the planes (a, b, c, d: in front where a x + b y + c z + d
 /// >= 0; of any length), so it is not in the convex region that they bound; also for a handle of no object.

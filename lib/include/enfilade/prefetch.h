@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Streaming: which cells' geometry will be wanted soon, and telling the system so. A world file is mapped,
-// not read: what is drawn comes from disk when it is first touched. To have it there before it is seen, ask
-// for the cells that a viewer may see within the next seconds and advise the system of them, and of those
-// that are not wanted any more.
+// Streaming: which cells' geometry will be wanted soon, and having just that in memory. A world file is
+// mapped, not read: what is drawn comes from disk when it is first touched, and stays. To have it there
+// before it is seen, ask for the cells that a viewer may see within the next seconds and load them; and drop
+// those that are not wanted any more.
 //
 // The guess: the viewer keeps its speed but may turn, which takes time. It can see what the visible set (PVS)
 // of each cell holds that it may have come to by then; T. A. Funkhouser, C. H. Sequin, S. J. Teller,
@@ -46,12 +46,29 @@ ENF_API int32_t enf_prefetch_list(enf_prefetch *prefetch, int32_t cell, const do
                                   const double velocity[3], double seconds, enf_wanted *out,
                                   int32_t capacity);
 
-/// Tells the system that a cell's triangles, with their points, normals and texture coordinates, will be
-/// needed soon, or not any more. Changes nothing but where they lie: whoever touches them later gets them all
-/// the same. Pages that other cells share go, too. Does nothing for a world that was opened in memory or
-/// whose triangles are not loaded, and for a cell that the world does not have. Reads the cell's triangles,
-/// so it may wait for the disk: call it in a thread that may. Any number of threads may call it.
-ENF_API void enf_world_advise_cell(const enf_world *world, int32_t cell, bool needed);
+/// Which cells' geometry is loaded. Belongs to one thread at a time.
+typedef struct enf_stream enf_stream;
+
+/// Drops the geometry of all cells. If the triangles of a world were not loaded yet, they are checked first,
+/// all of them once. The world must stay open as long as the stream lives, and should have no other. Takes a
+/// byte for each cell and 4 for each page of the file. ENF_NO_RESOURCES without memory.
+ENF_API enf_status enf_stream_create(enf_stream **stream, const enf_world *world, enf_error *error);
+
+/// Null is fine. Drops nothing.
+ENF_API void enf_stream_free(enf_stream *stream);
+
+/// Tells the system to read a cell's triangles, with their points, normals and texture coordinates, from disk
+/// ahead of their use. False if nothing was to do: the cell is loaded already, or the world does not have it.
+ENF_API bool enf_stream_load(enf_stream *stream, int32_t cell);
+
+/// Gives the memory of a cell's geometry back, but for pages (of 4 KiB, mostly) that a loaded cell uses, too.
+/// They are no longer the process's; what the system keeps of the file while it has room is its own. False
+/// as above.
+///
+/// Neither changes what is read: whoever touches geometry that is not loaded gets it all the same, and waits
+/// for the disk. Both read the cell's triangles, so they may wait themselves: call them in a thread that may.
+/// Of a world that was opened in memory nothing is dropped, as nothing would bring it back.
+ENF_API bool enf_stream_drop(enf_stream *stream, int32_t cell);
 
 #ifdef __cplusplus
 }
