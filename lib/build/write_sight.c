@@ -38,7 +38,8 @@ typedef struct sighter {
     size_t origin_count, origin_capacity;
     enf_barrier_box *boxes; ///< as many
     size_t box_capacity;
-    int32_t wall_count; ///< the rest are portals
+    size_t vertex_total; ///< of all barriers
+    int32_t wall_count;  ///< the rest are portals
 } sighter;
 
 // --- Barriers
@@ -204,6 +205,7 @@ static bool note(sighter *s, int32_t kind, int32_t number, int32_t index) {
     if (!enf_array_reserve(s->origins, s->origin_capacity, s->origin_count + 1) ||
         !enf_array_reserve(s->boxes, s->box_capacity, s->origin_count + 1))
         return false;
+    s->vertex_total += s->vertex_count;
     s->boxes[s->origin_count] = box_around(s);
     s->origins[s->origin_count++] = from;
     return true;
@@ -295,12 +297,37 @@ static bool find_extent(sighter *s) {
 // --- Trees
 // -------------------------------------------------------------------------------------------------------
 
+/// The origins in the order of the boxes, in the place of the barriers: neither is needed any more then.
+static bool order_origins(sighter *s) {
+    free(s->barriers);
+    s->barriers = enf_array_new(s->origin_count, sizeof *s->barriers);
+    s->barrier_capacity = s->barriers ? s->origin_count : 0;
+    for (size_t i = 0; s->barriers && i < s->origin_count; i++) {
+        const origin *from = &s->origins[s->boxes[i].barrier];
+        s->barriers[i] =
+            (enf_file_barrier){.kind = from->kind, .index = from->index, .vertex_first = from->number};
+    }
+    free(s->origins);
+    free(s->boxes);
+    s->origins = NULL;
+    s->boxes = NULL;
+    return s->barriers;
+}
+
 /// The barriers in the order of their boxes.
 static bool make_barriers(sighter *s) {
-    s->barrier_count = s->vertex_count = 0;
-    for (size_t i = 0; i < s->origin_count; i++)
-        if (!add_from(s, &s->origins[s->boxes[i].barrier])) return false;
-    return true;
+    const size_t count = s->origin_count;
+    bool good = order_origins(s);
+    free(s->vertices);
+    s->vertices = NULL;
+    s->vertex_capacity = s->barrier_count = s->vertex_count = 0;
+    good = good && enf_array_reserve(s->vertices, s->vertex_capacity, s->vertex_total);
+    for (size_t i = 0; good && i < count; i++) {
+        const enf_file_barrier *place = &s->barriers[i];
+        const origin from = {place->kind, place->vertex_first, place->index};
+        good = add_from(s, &from);
+    }
+    return good;
 }
 
 static bool make_trees(sighter *s, enf_barrier_tree *walls, enf_barrier_tree *portals) {
