@@ -5,7 +5,7 @@
 // traversal", 2013; 2^-21). So no box is missed.
 //
 // What takes time is waiting: for a node to come from memory, for its boxes to be compared before the next
-// one is known. So two nodes are opened at a time, and nothing branches on which children are met.
+// one is known. So several nodes are opened at a time, and nothing branches on which children are met.
 #include "run/walk.h"
 
 #include <math.h>
@@ -124,11 +124,12 @@ int32_t enf_walk_next(enf_walk *walk) {
             continue;
         }
         if (!is_wanted(walk, top.child)) continue;
-        if (count > 0 && is_wanted(walk, waiting[count - 1].child)) {
-            int32_t other = waiting[--count].child;
-            count += open_node(walk, &nodes[other], &waiting[count]);
-        }
-        count += open_node(walk, &nodes[top.child], &waiting[count]);
+        int32_t batch[ENF_WALK_BATCH];
+        int n = 1;
+        batch[0] = top.child;
+        while (n < ENF_WALK_BATCH && count > 0 && is_wanted(walk, waiting[count - 1].child))
+            batch[n++] = waiting[--count].child;
+        while (n > 0) count += open_node(walk, &nodes[batch[--n]], &waiting[count]);
     }
     walk->count = count;
     return found;

@@ -9,9 +9,11 @@
 #include <stdatomic.h>
 #include <stdint.h>
 
-/// Every level leaves at most eight children waiting: two nodes are opened at a time, and the deeper ones are
-/// on top.
-#define ENF_WALK_WAITING_MAX (8 * ENF_FILE_BARRIER_DEPTH_MAX + 8)
+/// So many nodes are opened at a time.
+#define ENF_WALK_BATCH 4
+
+/// Every level leaves at most so many children waiting, as the deeper ones are on top.
+#define ENF_WALK_WAITING_MAX (4 * ENF_WALK_BATCH * (ENF_FILE_BARRIER_DEPTH_MAX + 1))
 
 /// A node or barrier and where its box begins, a share of the segment: the bits of a float, which compare as
 /// numbers as none is negative, the lowest two of them used to tell siblings apart.
