@@ -339,12 +339,11 @@ ENF_PART_OF_WIDE void add_body_planes(enf_separators *separators, const passage 
 }
 
 ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes,
-                                           const enf_body *body, const enf_outline *to, int32_t to_portal) {
-    const enf_shape *shape = &shapes->shapes[to_portal >> 1];
+                                           const enf_body *body, const enf_outline *to, int32_t to_portal,
+                                           const double middle[3], const double half[3]) {
     double apart[3], span = 0;
     for (int axis = 0; axis < 3; axis++) {
-        const double way = fabs(shape->middle[axis] - body->middle[axis]),
-                     halves = shape->half[axis] + body->half[axis];
+        const double way = fabs(middle[axis] - body->middle[axis]), halves = half[axis] + body->half[axis];
         apart[axis] = way > halves ? way - halves : 0;
         span += way + halves;
     }

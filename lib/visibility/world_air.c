@@ -21,6 +21,8 @@ static enf_status partition(enf_world_air *air, const enf_air_tree *tree, const 
                             const enf_file_view *view, double size, enf_error *error) {
     enf_status status = enf_air_parts_make(&air->parts, tree, view, error);
     if (!status) status = enf_air_openings_make(&air->leafs, tree, walls, &air->parts, size, error);
+    if (!status && !enf_air_order_make(&air->order, tree, air->parts.leaf_of, air->parts.bodies.cell_count))
+        status = enf_fail_memory(error, "the order of the leafs");
     return status;
 }
 
@@ -52,6 +54,7 @@ static enf_status choose(enf_world_air *air, bool is_partitioned, bool only_part
     if (has_partition || !air->uses_leafs) return ENF_OK;
     enf_portal_graph_free(&air->leafs);
     enf_air_parts_free(&air->parts);
+    enf_air_order_free(&air->order);
     return enf_air_fine_make(&air->leafs, &air->parts, view, error);
 }
 
@@ -80,5 +83,6 @@ void enf_world_air_free(enf_world_air *air) {
     enf_portal_graph_free(&air->portals);
     enf_portal_graph_free(&air->leafs);
     enf_air_parts_free(&air->parts);
+    enf_air_order_free(&air->order);
     *air = (enf_world_air){0};
 }
