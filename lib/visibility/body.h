@@ -7,7 +7,8 @@
 
 enum {
     ENF_BODY_CORNERS = 64, ///< a body that has more becomes the box around it
-    ENF_BODY_EDGES = 3 * ENF_BODY_CORNERS
+    ENF_BODY_EDGES = 3 * ENF_BODY_CORNERS,
+    ENF_BODY_FACES = 64
 };
 
 typedef struct enf_body {
@@ -18,8 +19,12 @@ typedef struct enf_body {
     int32_t edge_count;
     double from[3][ENF_BODY_EDGES], along[3][ENF_BODY_EDGES]; ///< an end, and the way to the other
     double left[3][ENF_BODY_EDGES],
-        right[3][ENF_BODY_EDGES]; ///< square to the edge into the two faces, of length 1: all of the body
-                                  ///< lies in the wedge between them
+        right[3][ENF_BODY_EDGES];     ///< square to the edge into the two faces, of length 1: all of the body
+                                      ///< lies in the wedge between them
+    uint8_t faces[2][ENF_BODY_EDGES]; ///< their numbers, if those are known
+
+    int32_t face_count;                                       ///< 0: they are too many, and not known
+    double normal[3][ENF_BODY_FACES], offset[ENF_BODY_FACES]; ///< up to the next four; of length 1
     double at[3][ENF_BODY_CORNERS + ENF_OUTLINE_MORE];
 } enf_body;
 

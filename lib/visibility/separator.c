@@ -267,55 +267,98 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
     enf_separators_between(separators, shapes, &one, from_portal, &two, to_portal);
 }
 
-/// Four edges of a body, and the two planes through each that touch the window, by their normals of any
-/// length.
-typedef struct body_edges {
-    enf_four a[3], left[3], right[3];
-    enf_four normals[2][3];
-} body_edges;
+/// Edges of a body, and the way to turn round each: twice its number, and 1 for backwards.
+typedef struct turns {
+    int32_t count;
+    uint16_t items[2 * ENF_BODY_EDGES + ENF_FOUR];
+} turns;
 
-/// Turns a plane on to a corner that lies behind it.
-ENF_PART_OF_WIDE void turn_on(enf_four normal[3], const enf_four way[3], const enf_four next[3]) {
-    const enf_four_mask behind = dot_four(normal, way) < 0;
-    for (int axis = 0; axis < 3; axis++) normal[axis] = enf_four_choose(behind, next[axis], normal[axis]);
+enum { WINDOW_SEEN = 64 }; ///< corners of a window that are told apart by bits
+
+/// Which corners of the window lie behind each face.
+ENF_PART_OF_WIDE void find_behind(const passage *passage, const enf_body *body, int64_t *behind) {
+    const enf_outline *window = passage->one;
+    for (int32_t first = 0; first < body->face_count; first += ENF_FOUR) {
+        const enf_four x = enf_four_load(body->normal[0] + first), y = enf_four_load(body->normal[1] + first),
+                       z = enf_four_load(body->normal[2] + first),
+                       least = enf_four_load(body->offset + first) - passage->shapes->tolerance;
+        enf_four_mask found = {0};
+        for (int32_t i = 0; i < window->count; i++) {
+            const enf_four_mask is_behind =
+                window->at[0][i] * x + window->at[1][i] * y + window->at[2][i] * z < least;
+            found |= is_behind & (int64_t)(UINT64_C(1) << i);
+        }
+        for (int lane = 0; lane < ENF_FOUR; lane++) behind[first + lane] = found[lane];
+    }
 }
 
-/// As turn_to, both ways round.
-ENF_PART_OF_WIDE void turn_body_edges(const passage *passage, const enf_body *body, int32_t first,
+/// The edges that a plane may touch which has the window in front and the body behind. Among planes through
+/// an edge those with the body behind lie between its faces. If a corner of the window is behind both faces,
+/// it is behind all of them. If none is behind one face, planes that turn away from this face go on to have
+/// the window in front until they touch it: there is no need to look the other way round, and none to look
+/// at all where none is behind the other face, either.
+ENF_PART_OF_WIDE void choose_turns(const passage *passage, const enf_body *body, turns *turns) {
+    int64_t behind[ENF_BODY_FACES];
+    const bool knows = body->face_count > 0 && passage->one->count <= WINDOW_SEEN;
+    int32_t count = 0;
+    if (knows) find_behind(passage, body, behind);
+    for (int32_t i = 0; i < body->edge_count; i++) {
+        const int64_t left = knows ? behind[body->faces[0][i]] : 1,
+                      right = knows ? behind[body->faces[1][i]] : 2;
+        const bool some = !(left & right);
+        turns->items[count] = (uint16_t)(2 * i);
+        count += some & (right != 0);
+        turns->items[count] = (uint16_t)(2 * i + 1);
+        count += some & (left != 0);
+    }
+    turns->count = count;
+    for (int lane = 0; lane < ENF_FOUR; lane++) turns->items[count + lane] = 0;
+}
+
+/// Four of these edges, and the plane through each that touches the window, by its normal of any length.
+typedef struct body_edges {
+    enf_four a[3], left[3], right[3], normal[3];
+} body_edges;
+
+ENF_PART_OF_WIDE enf_four gather(const double *from, const int32_t *places) {
+    return (enf_four){from[places[0]], from[places[1]], from[places[2]], from[places[3]]};
+}
+
+/// As turn_to.
+ENF_PART_OF_WIDE void turn_body_edges(const passage *passage, const enf_body *body, const uint16_t *turns,
                                       body_edges *edges) {
     const enf_outline *window = passage->one;
-    enf_four edge[3], way[3], next[3], opposite[3];
+    const int32_t places[ENF_FOUR] = {turns[0] >> 1, turns[1] >> 1, turns[2] >> 1, turns[3] >> 1};
+    const enf_four_mask back = -(enf_four_mask){turns[0] & 1, turns[1] & 1, turns[2] & 1, turns[3] & 1};
+    enf_four edge[3], way[3], next[3];
     for (int axis = 0; axis < 3; axis++) {
-        edges->a[axis] = enf_four_load(body->from[axis] + first);
-        edge[axis] = enf_four_load(body->along[axis] + first);
-        edges->left[axis] = enf_four_load(body->left[axis] + first);
-        edges->right[axis] = enf_four_load(body->right[axis] + first);
+        edges->a[axis] = gather(body->from[axis], places);
+        edges->left[axis] = gather(body->left[axis], places);
+        edges->right[axis] = gather(body->right[axis], places);
+        edge[axis] = gather(body->along[axis], places);
+        edge[axis] = (enf_four)((enf_four_mask)edge[axis] ^ (back & INT64_MIN));
+        way[axis] = window->at[axis][0] - edges->a[axis];
     }
-    for (int32_t i = 0; i < window->count; i++) {
+    cross_four(edge, way, edges->normal);
+    for (int32_t i = 1; i < window->count; i++) {
         for (int axis = 0; axis < 3; axis++) way[axis] = window->at[axis][i] - edges->a[axis];
         cross_four(edge, way, next);
-        for (int axis = 0; axis < 3; axis++) {
-            opposite[axis] = -next[axis];
-            if (i > 0) continue;
-            edges->normals[0][axis] = next[axis];
-            edges->normals[1][axis] = opposite[axis];
-        }
-        turn_on(edges->normals[0], way, next);
-        turn_on(edges->normals[1], way, opposite);
+        const enf_four_mask behind = dot_four(edges->normal, way) < 0;
+        for (int axis = 0; axis < 3; axis++)
+            edges->normal[axis] = enf_four_choose(behind, next[axis], edges->normal[axis]);
     }
 }
 
 /// Adds those of four planes that part the body and the window. They have the body behind them if they do not
 /// come into the wedge of the two faces.
 ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passage *passage,
-                                        const body_edges *edges, const enf_four normal[3],
-                                        enf_four_mask good) {
-    good &= (dot_four(normal, edges->left) <= 0) & (dot_four(normal, edges->right) <= 0);
+                                        const body_edges *edges, enf_four_mask good) {
+    good &= (dot_four(edges->normal, edges->left) <= 0) & (dot_four(edges->normal, edges->right) <= 0);
     if (!enf_four_bits(good)) return;
     const double swing = find_swing(passage, passage->gap), tolerance = passage->shapes->tolerance;
-    const enf_four square = dot_four(normal, normal), inverse = inverse_root(square);
+    const enf_four square = dot_four(edges->normal, edges->normal), inverse = inverse_root(square);
     enf_four unit[3];
-    for (int axis = 0; axis < 3; axis++) unit[axis] = normal[axis] * inverse;
+    for (int axis = 0; axis < 3; axis++) unit[axis] = edges->normal[axis] * inverse;
     enf_four second;
     const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit, &second),
                    tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse,
@@ -328,13 +371,14 @@ ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passag
 /// The planes through edges of the body. `one` of the passage is the window, `other` the body.
 ENF_PART_OF_WIDE void add_body_planes(enf_separators *separators, const passage *passage,
                                       const enf_body *body) {
-    for (int32_t first = 0; first < body->edge_count; first += ENF_FOUR) {
-        if (separators->count > ENF_SEPARATORS_MOST - 2 * ENF_FOUR) return;
-        const enf_four_mask there = (enf_four_mask){0, 1, 2, 3} < (int64_t)(body->edge_count - first);
+    turns turns;
+    choose_turns(passage, body, &turns);
+    for (int32_t first = 0; first < turns.count; first += ENF_FOUR) {
+        if (separators->count > ENF_SEPARATORS_MOST - ENF_FOUR) return;
+        const enf_four_mask there = (enf_four_mask){0, 1, 2, 3} < (int64_t)(turns.count - first);
         body_edges edges;
-        turn_body_edges(passage, body, first, &edges);
-        for (int side = 0; side < 2; side++)
-            add_body_tangents(separators, passage, &edges, edges.normals[side], there);
+        turn_body_edges(passage, body, turns.items + first, &edges);
+        add_body_tangents(separators, passage, &edges, there);
     }
 }
 
