@@ -200,6 +200,14 @@ static void extend_box(gap *gap, const enf_shape *shape) {
     }
 }
 
+/// Do the boxes of a gap and of an opening touch each other?
+static bool is_next_to(const gap *gap, const enf_shape *shape, double tolerance) {
+    for (int axis = 0; axis < 3; axis++)
+        if (fabs(gap->middle[axis] - shape->middle[axis]) > gap->half[axis] + shape->half[axis] + tolerance)
+            return false;
+    return true;
+}
+
 /// Puts the window of one more portal and `joined` together, if that adds next to nothing.
 static bool join(enf_body_beams *beams, int32_t portal, double *area) {
     const enf_shapes *shapes = beams->ways->shapes;
@@ -225,7 +233,9 @@ static bool join(enf_body_beams *beams, int32_t portal, double *area) {
 /// them wait any more.
 static void take_gap(enf_body_beams *beams, int32_t portal, gap *gap) {
     const int32_t *next = beams->ways->coplanar;
-    const enf_shape *shapes = beams->ways->shapes->shapes, *shape = &shapes[portal >> 1];
+    const enf_shapes *shapes = beams->ways->shapes;
+    const enf_shape *shape = &shapes->shapes[portal >> 1];
+    bool begun = false;
     double area = 0;
     *gap = (struct gap){.portal = portal, .outline = enf_kept_outline(&beams->kept, portal)};
     memcpy(gap->middle, shape->middle, sizeof gap->middle);
@@ -235,15 +245,16 @@ static void take_gap(enf_body_beams *beams, int32_t portal, gap *gap) {
         grows = false;
         for (int32_t other = next[portal]; other != portal; other = next[other]) {
             if (beams->kept.beams[other].state != ENF_BEAM_WAITING) continue;
-            if (gap->outline.at[0] != beams->joined.at[0]) {
+            if (!is_next_to(gap, &shapes->shapes[other >> 1], shapes->tolerance)) continue;
+            if (!begun) {
                 enf_window_take(&beams->joined, &gap->outline);
-                gap->outline = enf_window_outline(&beams->joined);
                 area = find_area(&beams->joined, shape->axes);
+                begun = true;
             }
             if (!join(beams, other, &area)) continue;
             grows = true;
-            gap->outline.count = beams->joined.count;
-            extend_box(gap, &shapes[other >> 1]);
+            gap->outline = enf_window_outline(&beams->joined);
+            extend_box(gap, &shapes->shapes[other >> 1]);
             beams->kept.beams[other].state = ENF_BEAM_REACHED;
         }
     }
