@@ -65,7 +65,8 @@ ENF_PART_OF_WIDE void turn_to(const enf_outline *other, const enf_four from[3], 
 }
 
 ENF_PART_OF_WIDE enf_four inverse_root(enf_four square) {
-    const enf_four roots = {sqrt(square[0]), sqrt(square[1]), sqrt(square[2]), sqrt(square[3])};
+    enf_four roots;
+    for (int lane = 0; lane < ENF_FOUR; lane++) roots[lane] = sqrt(square[lane]);
     return 1 / roots;
 }
 
@@ -161,11 +162,18 @@ ENF_PART_OF_WIDE void add_near_planes(enf_separators *separators, const passage 
     }
 }
 
-/// Four cuts, of which those that are good are added. (Not to branch here is worth it: there is no telling
-/// which they are.)
+/// Four cuts, of which those that are good are added: mostly some first ones, or all. (Not to branch between
+/// others is worth it: there is no telling which they are.)
 ENF_PART_OF_WIDE void add_good(enf_separators *separators, const enf_four normal[3], enf_four least,
                                enf_four_mask good) {
     int32_t index = separators->count;
+    const unsigned bits = enf_four_bits(good);
+    if ((bits & (bits + 1)) == 0) {
+        for (int axis = 0; axis < 3; axis++) enf_four_store(separators->normal[axis] + index, normal[axis]);
+        enf_four_store(separators->least + index, least);
+        separators->count += __builtin_popcount(bits);
+        return;
+    }
     for (int lane = 0; lane < ENF_FOUR; lane++) {
         for (int axis = 0; axis < 3; axis++) separators->normal[axis][index] = normal[axis][lane];
         separators->least[index] = least[lane];
@@ -305,11 +313,9 @@ ENF_PART_OF_WIDE void choose_turns(const passage *passage, const enf_body *body,
     for (int32_t i = 0; i < body->edge_count; i++) {
         const int64_t left = knows ? behind[body->faces[0][i]] : 1,
                       right = knows ? behind[body->faces[1][i]] : 2;
-        const bool some = !(left & right);
-        turns->items[count] = (uint16_t)(2 * i);
-        count += some & (right != 0);
-        turns->items[count] = (uint16_t)(2 * i + 1);
-        count += some & (left != 0);
+        turns->items[count] = (uint16_t)(2 * i + (left != 0));
+        count += !(left & right) & ((left | right) != 0);
+        if ((left != 0) & (right != 0) & !(left & right)) turns->items[count++] = (uint16_t)(2 * i);
     }
     turns->count = count;
     for (int lane = 0; lane < ENF_FOUR; lane++) turns->items[count + lane] = 0;
