@@ -31,7 +31,7 @@ static void compile(world *world, const char *path) {
     enf_status status = enf_soup_read(&world->build.soup, path, &error);
     if (!status) status = enf_build_run(&world->build, &options, &error);
     if (!status) status = enf_image_make(&world->image, &world->build, "{}", &error);
-    if (!status) status = enf_world_air_make(&world->air, &world->image.view, false, &error);
+    if (!status) status = enf_world_air_make(&world->air, &world->image.view, false, 1, &error);
     if (status) fail_msg("%s: %s", path, error.text);
 }
 
@@ -139,6 +139,9 @@ static void test_threads_do_not_matter(void **unused) {
     make(&world, "office", NULL);
     enf_pvs one = find(&world, ENF_METHOD_HOURGLASS, 1);
     for (int threads = 2; threads <= 8; threads += 3) {
+        enf_error error;
+        enf_world_air_free(&world.air);
+        assert_int_equal(enf_world_air_make(&world.air, &world.image.view, false, threads, &error), ENF_OK);
         enf_pvs other = find(&world, ENF_METHOD_HOURGLASS, threads);
         assert_memory_equal(one.rows, other.rows, words_of(&one) * sizeof *one.rows);
         enf_pvs_free(&other);

@@ -18,8 +18,8 @@ static double size_of(const enf_file_view *view) {
 }
 
 static enf_status partition(enf_world_air *air, const enf_air_tree *tree, const enf_walls *walls,
-                            const enf_file_view *view, double size, enf_error *error) {
-    enf_status status = enf_air_parts_make(&air->parts, tree, view, error);
+                            const enf_file_view *view, double size, int threads, enf_error *error) {
+    enf_status status = enf_air_parts_make(&air->parts, tree, view, threads, error);
     if (!status) status = enf_air_openings_make(&air->leafs, tree, walls, &air->parts, size, error);
     if (!status && !enf_air_order_make(&air->order, tree, air->parts.leaf_of, air->parts.bodies.cell_count))
         status = enf_fail_memory(error, "the order of the leafs");
@@ -58,7 +58,7 @@ static enf_status choose(enf_world_air *air, bool is_partitioned, bool only_part
     return enf_air_fine_make(&air->leafs, &air->parts, view, error);
 }
 
-enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition,
+enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition, int threads,
                               enf_error *error) {
     *air = (enf_world_air){0};
     enf_walls walls = {0};
@@ -72,7 +72,8 @@ enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, boo
             outcome = enf_air_tree_make(&tree, &walls, size, find_leafs_most(air->portals.opening_count));
         if (outcome == ENF_AIR_NO_MEMORY) status = enf_fail_memory(error, "the partition of the air");
     }
-    if (!status && outcome == ENF_AIR_DONE) status = partition(air, &tree, &walls, view, size, error);
+    if (!status && outcome == ENF_AIR_DONE)
+        status = partition(air, &tree, &walls, view, size, threads, error);
     if (!status) status = choose(air, outcome == ENF_AIR_DONE, only_partition, view, error);
     enf_air_tree_free(&tree);
     enf_walls_free(&walls);

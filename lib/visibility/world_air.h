@@ -23,9 +23,9 @@ typedef struct enf_world_air {
     enf_air_order order;           ///< of the leafs of a partition
 } enf_world_air;
 
-/// Needs the exact part of the file for leafs. `only_partition`: fine cells are not taken for leafs. *air is
-/// overwritten; free it in any case.
-enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition,
+/// Needs the exact part of the file for leafs. `only_partition`: fine cells are not taken for leafs. The air
+/// is the same for any number of threads. *air is overwritten; free it in any case.
+enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition, int threads,
                               enf_error *error);
 void enf_world_air_free(enf_world_air *air);
 
