@@ -194,7 +194,11 @@ static void put_edge(enf_body *body, const double from[3], const double to[3], c
     cross(along, meeting->normals[1], right);
     if (!normalise(left) || !normalise(right)) return;
     int32_t index = body->edge_count++;
-    for (int side = 0; side < 2; side++) body->faces[side][index] = (uint8_t)meeting->faces[side];
+    for (int side = 0; side < 2; side++) {
+        const int32_t face = meeting->faces[side];
+        if (face < ENF_BODY_FACES && index < 64)
+            body->edges[side][face / 4][1 << face % 4] |= UINT64_C(1) << index;
+    }
     for (int axis = 0; axis < 3; axis++) {
         body->from[axis][index] = from[axis];
         body->along[axis][index] = along[axis];
@@ -214,12 +218,20 @@ static void close_edges(enf_body *body) {
         }
 }
 
+/// Fills up to the next four, and finds the edges of sets of faces from those of each.
 static void close_faces(enf_body *body) {
-    if (body->face_count > ENF_BODY_FACES) body->face_count = 0;
+    if (body->face_count > ENF_BODY_FACES || body->edge_count > 64) body->face_count = 0;
     for (int32_t i = body->face_count; i % 4; i++) {
         for (int axis = 0; axis < 3; axis++) body->normal[axis][i] = 0;
         body->offset[i] = 0;
+        for (int side = 0; side < 2; side++) body->edges[side][i / 4][1 << i % 4] = 0;
     }
+    for (int32_t group = 0; 4 * group < body->face_count; group++)
+        for (int side = 0; side < 2; side++) {
+            uint64_t *edges = body->edges[side][group];
+            edges[0] = 0;
+            for (int set = 1; set < 16; set++) edges[set] = edges[set & (set - 1)] | edges[set & -set];
+        }
 }
 
 /// Faces that meet at an angle smaller than this are one.
@@ -236,6 +248,7 @@ static void put_face(enf_body *body, const double normal[3], double offset) {
     if (index >= ENF_BODY_FACES) return;
     for (int axis = 0; axis < 3; axis++) body->normal[axis][index] = normal[axis];
     body->offset[index] = offset;
+    for (int side = 0; side < 2; side++) body->edges[side][index / 4][1 << index % 4] = 0;
 }
 
 /// The number of the first face that each is one with.

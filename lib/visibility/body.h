@@ -19,12 +19,15 @@ typedef struct enf_body {
     int32_t edge_count;
     double from[3][ENF_BODY_EDGES], along[3][ENF_BODY_EDGES]; ///< an end, and the way to the other
     double left[3][ENF_BODY_EDGES],
-        right[3][ENF_BODY_EDGES];     ///< square to the edge into the two faces, of length 1: all of the body
-                                      ///< lies in the wedge between them
-    uint8_t faces[2][ENF_BODY_EDGES]; ///< their numbers, if those are known
+        right[3][ENF_BODY_EDGES]; ///< square to the edge into the two faces, of length 1: all of the body
+                                  ///< lies in the wedge between them
 
-    int32_t face_count;                                       ///< 0: they are too many, and not known
+    int32_t face_count; ///< 0: they, or the edges, are too many, and they are not known
     double normal[3][ENF_BODY_FACES], offset[ENF_BODY_FACES]; ///< up to the next four; of length 1
+
+    /// Bit by bit, the edges that have some of four faces to the left, and to the right, for all sets of
+    /// these.
+    uint64_t edges[2][ENF_BODY_FACES / 4][16];
     double at[3][ENF_BODY_CORNERS + ENF_OUTLINE_MORE];
 } enf_body;
 

@@ -25,6 +25,7 @@ typedef struct waiting {
 typedef struct gap {
     int32_t portal; ///< one of them
     enf_outline outline;
+    double area;               ///< twice its area, seen along an axis; -1: not known yet
     double middle[3], half[3]; ///< the box around their openings
 } gap;
 
@@ -43,7 +44,8 @@ struct enf_body_beams {
     enf_body body;
     uint64_t *met; ///< a row of owners
     enf_separators separators;
-    enf_window window, joined, other;
+    enf_window window;
+    enf_window gaps[2]; ///< one is being put together; the other is scratch
 };
 
 static bool can_follow(const void *user, int32_t portal, int32_t next) {
@@ -155,8 +157,11 @@ static bool is_in_front(const enf_body_beams *beams, int32_t portal) {
     return false;
 }
 
-/// Can lines from the body pass the portal forwards? They have passed one of the first portals.
+/// Can lines from the body pass the portal forwards? If its middle is not behind the portal, some of the body
+/// is, and lines have passed one of the first portals. (To ask for that otherwise, too, takes off next to
+/// nothing.)
 static bool is_passable(enf_body_beams *beams, int32_t portal) {
+    if (enf_shape_height(beams->ways->shapes, portal, beams->body.middle) < 0) return true;
     if (!is_in_front(beams, portal)) return false;
     for (int32_t i = 0; i < beams->first_count; i++) { // most are faced by the one that faced the last
         if (enf_portals_face(beams->ways->shapes, beams->reached[beams->facing_first], portal)) return true;
@@ -182,10 +187,10 @@ static void reach_again(enf_body_beams *beams, int32_t portal, enf_remains remai
 // ---------------------------------------------------------------------------------------------- gaps
 
 /// Twice the area of a window, seen along the axis that its opening is seen best along.
-static double find_area(const enf_window *window, const int32_t axes[2]) {
-    const double *u = window->at[axes[0]], *v = window->at[axes[1]];
+static double find_area(const enf_outline *outline, const int32_t axes[2]) {
+    const double *u = outline->at[axes[0]], *v = outline->at[axes[1]];
     double area = 0;
-    for (int32_t i = 1; i + 1 < window->count; i++)
+    for (int32_t i = 1; i + 1 < outline->count; i++)
         area += (u[i] - u[0]) * (v[i + 1] - v[0]) - (u[i + 1] - u[0]) * (v[i] - v[0]);
     return area;
 }
@@ -208,24 +213,22 @@ static bool is_next_to(const gap *gap, const enf_shape *shape, double tolerance)
     return true;
 }
 
-/// Puts the window of one more portal and `joined` together, if that adds next to nothing.
-static bool join(enf_body_beams *beams, int32_t portal, double *area) {
+/// Puts the window of one more portal and the gap together, if that adds next to nothing.
+static bool join(enf_body_beams *beams, gap *gap, int32_t portal) {
     const enf_shapes *shapes = beams->ways->shapes;
     const int32_t *axes = shapes->shapes[portal >> 1].axes;
-    const enf_outline other = enf_kept_outline(&beams->kept, portal),
-                      joined = enf_window_outline(&beams->joined);
-    if (beams->joined.count + other.count > ENF_WINDOW_MOST / 2) return false;
-    enf_window_take(&beams->other, &other);
-    enf_window_take(&beams->window, &joined);
-    const double both = *area + find_area(&beams->other, axes);
-    enf_hull_extend(&beams->window, &beams->other, axes, shapes->tolerance);
-    *area = find_area(&beams->window, axes);
-    if (!(*area <= join_most * both)) {
-        *area = both - find_area(&beams->other, axes);
-        return false;
-    }
-    const enf_outline grown = enf_window_outline(&beams->window);
-    enf_window_take(&beams->joined, &grown);
+    const enf_outline other = enf_kept_outline(&beams->kept, portal);
+    if (gap->outline.count + other.count > ENF_WINDOW_MOST / 2) return false;
+    enf_window *window = &beams->gaps[gap->outline.at[0] == beams->gaps[0].at[0]];
+    enf_window_take(window, &gap->outline);
+    enf_hull_extend(window, &other, axes, shapes->tolerance);
+    const enf_outline joined = enf_window_outline(window);
+    const double area = find_area(&joined, axes);
+    if (gap->area < 0) gap->area = find_area(&gap->outline, axes);
+    if (!(area <= join_most * (gap->area + find_area(&other, axes)))) return false;
+    gap->outline = joined;
+    gap->area = area;
+    extend_box(gap, &shapes->shapes[portal >> 1]);
     return true;
 }
 
@@ -235,26 +238,19 @@ static void take_gap(enf_body_beams *beams, int32_t portal, gap *gap) {
     const int32_t *next = beams->ways->coplanar;
     const enf_shapes *shapes = beams->ways->shapes;
     const enf_shape *shape = &shapes->shapes[portal >> 1];
-    bool begun = false;
-    double area = 0;
-    *gap = (struct gap){.portal = portal, .outline = enf_kept_outline(&beams->kept, portal)};
+    gap->portal = portal;
+    gap->outline = enf_kept_outline(&beams->kept, portal);
+    gap->area = -1;
     memcpy(gap->middle, shape->middle, sizeof gap->middle);
     memcpy(gap->half, shape->half, sizeof gap->half);
     beams->kept.beams[portal].state = ENF_BEAM_REACHED;
-    for (bool grows = true; grows;) {
+    for (bool grows = next[portal] != portal; grows;) {
         grows = false;
         for (int32_t other = next[portal]; other != portal; other = next[other]) {
             if (beams->kept.beams[other].state != ENF_BEAM_WAITING) continue;
             if (!is_next_to(gap, &shapes->shapes[other >> 1], shapes->tolerance)) continue;
-            if (!begun) {
-                enf_window_take(&beams->joined, &gap->outline);
-                area = find_area(&beams->joined, shape->axes);
-                begun = true;
-            }
-            if (!join(beams, other, &area)) continue;
+            if (!join(beams, gap, other)) continue;
             grows = true;
-            gap->outline = enf_window_outline(&beams->joined);
-            extend_box(gap, &shapes->shapes[other >> 1]);
             beams->kept.beams[other].state = ENF_BEAM_REACHED;
         }
     }

@@ -27,12 +27,11 @@ static bool is_before(const point *a, const point *b, const int32_t axes[2]) {
     return a->at[u] < b->at[u] || (a->at[u] == b->at[u] && a->at[v] < b->at[v]);
 }
 
-static int32_t sort_corners(const enf_window *window, const int32_t axes[2], point *sorted, int32_t count) {
-    const enf_outline outline = enf_window_outline(window);
-    for (int32_t i = 0; i < window->count; i++) {
+static int32_t sort_corners(const enf_outline *outline, const int32_t axes[2], point *sorted, int32_t count) {
+    for (int32_t i = 0; i < outline->count; i++) {
         int32_t at = count++;
         point corner;
-        enf_outline_corner(&outline, i, corner.at);
+        enf_outline_corner(outline, i, corner.at);
         for (; at > 0 && is_before(&corner, &sorted[at - 1], axes); at--) sorted[at] = sorted[at - 1];
         sorted[at] = corner;
     }
@@ -47,10 +46,11 @@ static int32_t add_corner(const point **chain, int32_t made, int32_t start, cons
     return made + 1;
 }
 
-static void make_anew(enf_window *window, const enf_window *other, const int32_t axes[2]) {
+static void make_anew(enf_window *window, const enf_outline *other, const int32_t axes[2]) {
     point sorted[2 * ENF_WINDOW_MOST];
     const point *chain[2 * ENF_WINDOW_MOST + 2];
-    int32_t count = sort_corners(window, axes, sorted, 0), made = 0;
+    const enf_outline own = enf_window_outline(window);
+    int32_t count = sort_corners(&own, axes, sorted, 0), made = 0;
     count = sort_corners(other, axes, sorted, count);
     for (int32_t i = 0; i < count; i++) made = add_corner(chain, made, 0, &sorted[i], axes);
     const int32_t start = --made; // the last one begins the way back
@@ -84,7 +84,7 @@ ENF_PART_OF_WIDE void find_edges(const double *us, const double *vs, int32_t cou
 }
 
 /// Which corners of the other lie outside of the window; none if all are within the tolerance of it.
-ENF_PART_OF_WIDE uint64_t find_outside(const enf_window *window, const enf_window *other,
+ENF_PART_OF_WIDE uint64_t find_outside(const enf_window *window, const enf_outline *other,
                                        const int32_t axes[2], double tolerance) {
     const double *us = window->at[axes[0]], *vs = window->at[axes[1]];
     edges edges;
@@ -112,7 +112,7 @@ typedef struct rim {
     uint8_t corners[2 * EDGES_MOST + 2]; ///< round the hull; the first one again at the end
 } rim;
 
-static void make_rim(const enf_window *window, const enf_window *other, const int32_t axes[2], rim *rim) {
+static void make_rim(const enf_window *window, const enf_outline *other, const int32_t axes[2], rim *rim) {
     const int32_t count = window->count;
     enf_outline_copy(rim->u, window->at[axes[0]], count);
     enf_outline_copy(rim->v, window->at[axes[1]], count);
@@ -183,7 +183,7 @@ static bool add_corners(rim *rim, uint64_t corners, int32_t begin) {
 }
 
 /// Makes the window what the rim says.
-static void take_rim(enf_window *window, const enf_window *other, const rim *rim) {
+static void take_rim(enf_window *window, const enf_outline *other, const rim *rim) {
     const int32_t begin = window->count;
     for (int axis = 0; axis < 3; axis++) {
         double at[EDGES_MOST + 1];
@@ -197,7 +197,7 @@ static void take_rim(enf_window *window, const enf_window *other, const rim *rim
     window->count = rim->count;
 }
 
-static bool is_within(const enf_window *window, const enf_window *other, const int32_t axes[2],
+static bool is_within(const enf_window *window, const enf_outline *other, const int32_t axes[2],
                       double tolerance) {
     const double *us = window->at[axes[0]], *vs = window->at[axes[1]];
     for (int32_t i = 0; i < window->count; i++) {
@@ -209,7 +209,7 @@ static bool is_within(const enf_window *window, const enf_window *other, const i
     return true;
 }
 
-ENF_WIDE_TOO bool enf_hull_extend(enf_window *window, const enf_window *other, const int32_t axes[2],
+ENF_WIDE_TOO bool enf_hull_extend(enf_window *window, const enf_outline *other, const int32_t axes[2],
                                   double tolerance) {
     if (window->count > EDGES_MOST || other->count > EDGES_MOST) {
         if (is_within(window, other, axes, tolerance)) return false;

@@ -52,9 +52,9 @@ bool enf_kept_grow(enf_kept *kept, int32_t portal, const enf_window *window, enf
     const enf_shape *shape = &kept->shapes->shapes[portal >> 1];
     if (beam->count + window->count > ENF_WINDOW_MOST) remains = ENF_REMAINS_WHOLE;
     if (remains != ENF_REMAINS_WHOLE) {
-        const enf_outline outline = enf_kept_outline(kept, portal);
+        const enf_outline outline = enf_kept_outline(kept, portal), other = enf_window_outline(window);
         enf_window_take(&kept->merged, &outline);
-        if (!enf_hull_extend(&kept->merged, window, shape->axes, kept->shapes->tolerance)) return false;
+        if (!enf_hull_extend(&kept->merged, &other, shape->axes, kept->shapes->tolerance)) return false;
         beam->growths++;
     }
     keep(kept, portal, &kept->merged, remains);

@@ -281,23 +281,39 @@ typedef struct turns {
     uint16_t items[2 * ENF_BODY_EDGES + ENF_FOUR];
 } turns;
 
-enum { WINDOW_SEEN = 64 }; ///< corners of a window that are told apart by bits
+/// Edges of a body, bit by bit.
+typedef struct edge_set {
+    uint64_t left, right,
+        both; ///< some corner of the window is behind the face on this side; one is behind both
+} edge_set;
 
-/// Which corners of the window lie behind each face.
-ENF_PART_OF_WIDE void find_behind(const passage *passage, const enf_body *body, int64_t *behind) {
+ENF_PART_OF_WIDE edge_set find_behind(const passage *passage, const enf_body *body) {
     const enf_outline *window = passage->one;
-    for (int32_t first = 0; first < body->face_count; first += ENF_FOUR) {
-        const enf_four x = enf_four_load(body->normal[0] + first), y = enf_four_load(body->normal[1] + first),
-                       z = enf_four_load(body->normal[2] + first),
-                       least = enf_four_load(body->offset + first) - passage->shapes->tolerance;
-        enf_four_mask found = {0};
-        for (int32_t i = 0; i < window->count; i++) {
-            const enf_four_mask is_behind =
-                window->at[0][i] * x + window->at[1][i] * y + window->at[2][i] * z < least;
-            found |= is_behind & (int64_t)(UINT64_C(1) << i);
+    edge_set found = {0};
+    for (int32_t i = 0; i < window->count; i++) {
+        const double x = window->at[0][i], y = window->at[1][i], z = window->at[2][i];
+        uint64_t left = 0, right = 0;
+        for (int32_t first = 0; first < body->face_count; first += ENF_FOUR) {
+            const unsigned behind = enf_four_bits(
+                x * enf_four_load(body->normal[0] + first) + y * enf_four_load(body->normal[1] + first) +
+                    z * enf_four_load(body->normal[2] + first) <
+                enf_four_load(body->offset + first) - passage->shapes->tolerance);
+            left |= body->edges[0][first / ENF_FOUR][behind];
+            right |= body->edges[1][first / ENF_FOUR][behind];
         }
-        for (int lane = 0; lane < ENF_FOUR; lane++) behind[first + lane] = found[lane];
+        found.left |= left;
+        found.right |= right;
+        found.both |= left & right;
     }
+    return found;
+}
+
+/// Backwards as far as edges of `one` go, forwards as far as those of `other` do.
+ENF_PART_OF_WIDE void list_turns(uint64_t one, uint64_t other, turns *turns) {
+    int32_t count = 0;
+    for (; one; one &= one - 1) turns->items[count++] = (uint16_t)(2 * __builtin_ctzll(one) + 1);
+    for (; other; other &= other - 1) turns->items[count++] = (uint16_t)(2 * __builtin_ctzll(other));
+    turns->count = count;
 }
 
 /// The edges that a plane may touch which has the window in front and the body behind. Among planes through
@@ -306,19 +322,14 @@ ENF_PART_OF_WIDE void find_behind(const passage *passage, const enf_body *body, 
 /// the window in front until they touch it: there is no need to look the other way round, and none to look
 /// at all where none is behind the other face, either.
 ENF_PART_OF_WIDE void choose_turns(const passage *passage, const enf_body *body, turns *turns) {
-    int64_t behind[ENF_BODY_FACES];
-    const bool knows = body->face_count > 0 && passage->one->count <= WINDOW_SEEN;
-    int32_t count = 0;
-    if (knows) find_behind(passage, body, behind);
-    for (int32_t i = 0; i < body->edge_count; i++) {
-        const int64_t left = knows ? behind[body->faces[0][i]] : 1,
-                      right = knows ? behind[body->faces[1][i]] : 2;
-        turns->items[count] = (uint16_t)(2 * i + (left != 0));
-        count += !(left & right) & ((left | right) != 0);
-        if ((left != 0) & (right != 0) & !(left & right)) turns->items[count++] = (uint16_t)(2 * i);
+    if (body->face_count > 0) {
+        const edge_set found = find_behind(passage, body);
+        list_turns(found.left & ~found.both, found.right & ~found.both, turns);
+    } else {
+        turns->count = 2 * body->edge_count;
+        for (int32_t i = 0; i < turns->count; i++) turns->items[i] = (uint16_t)i;
     }
-    turns->count = count;
-    for (int lane = 0; lane < ENF_FOUR; lane++) turns->items[count + lane] = 0;
+    for (int lane = 0; lane < ENF_FOUR; lane++) turns->items[turns->count + lane] = 0;
 }
 
 /// Four of these edges, and the plane through each that touches the window, by its normal of any length.

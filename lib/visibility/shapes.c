@@ -143,7 +143,7 @@ bool enf_shapes_make(enf_shapes *shapes, const enf_portal_graph *graph) {
     size_t corners = (size_t)graph->opening_corner[graph->opening_count];
     *shapes = (enf_shapes){.graph = graph};
     shapes->shapes = enf_array_zeroed((size_t)graph->opening_count, sizeof *shapes->shapes);
-    shapes->corners = enf_array_zeroed(corners + 1, sizeof *shapes->corners);
+    shapes->corners = enf_array_zeroed(corners + ENF_OUTLINE_MORE, sizeof *shapes->corners);
     shapes->outlines = enf_array_zeroed(corners + ENF_OUTLINE_MORE * ((size_t)graph->opening_count + 1),
                                         3 * sizeof *shapes->outlines);
     if (!shapes->shapes || !shapes->corners || !shapes->outlines) return false;

@@ -19,7 +19,7 @@ typedef struct enf_shape {
 typedef struct enf_shapes {
     const enf_portal_graph *graph; ///< not owned
     enf_shape *shapes;             ///< per opening
-    double (*corners)[3]; ///< of outlines: the windings, or a rectangle around one with over 64; one more
+    double (*corners)[3]; ///< of outlines: the windings, or a rectangle around one with over 64; four more
     double *outlines;     ///< the same as outlines, three times count + ENF_OUTLINE_MORE a piece
 
     // World units, both.
