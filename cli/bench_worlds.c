@@ -53,7 +53,7 @@ static enf_status throw_lines(const request *request, const enf_file_view *view,
     enf_world_lines lines = {0};
     enf_world_air air;
     const int64_t most = (int64_t)request->lines;
-    enf_status status = enf_world_air_make(&air, view, false, error);
+    enf_status status = enf_world_air_make(&air, view, false, request->settings.threads, error);
     if (!status) status = enf_world_lines_make(&lines, view, 1, error);
     for (int32_t i = 0; !status && i < view->portal_count; i++) // neighbours count as seen
         enf_pvs_set(&lines.seen, view->portals[i].from, view->portals[i].to);

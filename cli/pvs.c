@@ -137,7 +137,7 @@ static enf_status write_outputs(const request *request, const cli_pvs_result *re
 static enf_status find_in_world(cli_pvs_result *result, enf_error *error) {
     enf_world_air air;
     const enf_file_view *view = enf_world_file(result->world);
-    enf_status status = enf_world_air_make(&air, view, false, error);
+    enf_status status = enf_world_air_make(&air, view, false, result->options.threads, error);
     if (!status) status = enf_world_visibility_run(&result->visibility, &air, view, &result->options, error);
     enf_world_air_free(&air);
     return status;

@@ -182,7 +182,8 @@ static int check_lines(const enf_shapes *shapes, const enf_body *body, const dou
     double corners[8][3];
     int passed = 0;
     for (int32_t i = 0; i < to.count; i++) enf_outline_corner(&to, i, corners[i]);
-    enf_separators_from_body(&separators, shapes, body, &to, 0);
+    enf_separators_from_body(&separators, shapes, body, &to, 0, shapes->shapes[0].middle,
+                             shapes->shapes[0].half);
     for (int i = 0; i < 50; i++) {
         double a[3], b[3], c[3];
         mix(points, count, a);
@@ -239,7 +240,8 @@ static void test_separators_from_a_body_are_tight(void **unused) {
     assert_int_equal(body.corners.count, 8);
     assert_int_equal(body.edge_count, 12);
     const enf_outline to = enf_shape_outline(&shapes, 0);
-    enf_separators_from_body(&separators, &shapes, &body, &to, 0);
+    enf_separators_from_body(&separators, &shapes, &body, &to, 0, shapes.shapes[0].middle,
+                             shapes.shapes[0].half);
     // From height 1 through height 2 to height 3: x = 2 * 1 - (-1) at most, from the cube's side x = -1.
     const double inside[2][3] = {{2.999, 0, 3}, {1.499, 1.499, 3}},
                  outside[2][3] = {{3.001, 0, 3}, {2.001, 2.001, 3}};

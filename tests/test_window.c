@@ -82,7 +82,8 @@ static void test_a_hull_holds_both(void **unused) {
         if (one.count < 3) continue;
         const enf_outline outline = enf_window_outline(&one);
         enf_window_take(&hull, &outline);
-        const bool grown = enf_hull_extend(&hull, &other, axes, 0x1p-40);
+        const enf_outline added = enf_window_outline(&other);
+        const bool grown = enf_hull_extend(&hull, &added, axes, 0x1p-40);
         for (int32_t i = 0; i < one.count; i++)
             assert_true(outside(&hull, one.at[0][i], one.at[1][i]) < 1e-12);
         for (int32_t i = 0; i < other.count; i++)

@@ -4,6 +4,7 @@
 #include "build/build.h"
 #include "build/gen.h"
 #include "build/write.h"
+#include "visibility/shapes.h"
 #include "visibility/world_views.h"
 #include "visibility/world_visibility.h"
 
@@ -31,7 +32,7 @@ static void compile(world *world, const char *path) {
     enf_status status = enf_soup_read(&world->build.soup, path, &error);
     if (!status) status = enf_build_run(&world->build, &options, &error);
     if (!status) status = enf_build_image_make(&world->image, &world->build, "{}", &error);
-    if (!status) status = enf_world_air_make(&world->air, &world->image.view, false, &error);
+    if (!status) status = enf_world_air_make(&world->air, &world->image.view, false, 1, &error);
     if (status) fail_msg("%s: %s", path, error.text);
 }
 
@@ -139,11 +140,56 @@ static void test_threads_do_not_matter(void **unused) {
     make(&world, "office", NULL);
     enf_pvs one = find(&world, ENF_METHOD_HOURGLASS, 1);
     for (int threads = 2; threads <= 8; threads += 3) {
+        enf_error error;
+        enf_world_air_free(&world.air);
+        assert_int_equal(enf_world_air_make(&world.air, &world.image.view, false, threads, &error), ENF_OK);
         enf_pvs other = find(&world, ENF_METHOD_HOURGLASS, threads);
         assert_memory_equal(one.rows, other.rows, words_of(&one) * sizeof *one.rows);
         enf_pvs_free(&other);
     }
     enf_pvs_free(&one);
+    drop(&world);
+}
+
+static void assert_ranks_are_all_there(enf_air_ranks *ranks, int32_t leaf_count) {
+    bool *taken = calloc((size_t)leaf_count, sizeof *taken);
+    assert_non_null(taken);
+    for (int32_t leaf = 0; leaf < leaf_count; leaf++) {
+        const int32_t rank = enf_air_ranks_find(ranks, leaf);
+        assert_true(rank >= 0 && rank < leaf_count && !taken[rank]);
+        taken[rank] = true;
+    }
+    free(taken);
+}
+
+/// Lines from a point come to leafs of lower ranks first: at each opening the leaf on the point's side has
+/// the lower one.
+static void test_ranks_are_in_the_order_of_lines(void **unused) {
+    (void)unused;
+    world world;
+    enf_shapes shapes;
+    enf_air_ranks ranks;
+    int64_t compared = 0;
+    make(&world, "office", NULL);
+    assert_true(world.air.has_partition);
+    const enf_portal_graph *graph = &world.air.leafs;
+    assert_true(enf_shapes_make(&shapes, graph) && enf_air_ranks_make(&ranks, &world.air.order));
+    for (int32_t c = 0; c < graph->opening_corner[graph->opening_count]; c += 7) {
+        double point[3];
+        for (int axis = 0; axis < 3; axis++)
+            point[axis] = 0.7 * graph->corners[c][axis] + 0.3 * graph->corners[(c * 5) % (c + 1)][axis];
+        enf_air_ranks_begin(&ranks, point);
+        assert_ranks_are_all_there(&ranks, graph->cell_count);
+        for (int32_t portal = 0; portal < 2 * graph->opening_count; portal++) {
+            if (enf_shape_height(&shapes, portal, point) > -1e-6) continue;
+            assert_true(enf_air_ranks_find(&ranks, enf_portal_from(graph, portal)) <
+                        enf_air_ranks_find(&ranks, enf_portal_to(graph, portal)));
+            compared++;
+        }
+    }
+    assert_true(compared > 1000);
+    enf_air_ranks_free(&ranks);
+    enf_shapes_free(&shapes);
     drop(&world);
 }
 
@@ -176,12 +222,22 @@ static int32_t count_thin_openings(const enf_portal_graph *graph, double x, doub
     return count;
 }
 
+static void assert_planes(const enf_file_view *view, int32_t count) {
+    enf_walls walls;
+    enf_error error;
+    assert_int_equal(enf_air_walls_make(&walls, view, &error), ENF_OK);
+    assert_true(walls.count > count);
+    assert_int_equal(enf_walls_count_planes(&walls, 12), count);
+    enf_walls_free(&walls);
+}
+
 static void test_walls_without_thickness(void **unused) {
     (void)unused;
     world world;
     double width;
     make(&world, NULL, hall);
     assert_true(world.air.uses_leafs);
+    assert_planes(&world.image.view, 8);
     for (int x = 5; x <= 7; x += 2) {
         assert_true(count_thin_openings(&world.air.leafs, x, &width) >= 1);
         assert_true(width < 1 + 1e-6); // the door is left of the wall
@@ -229,9 +285,11 @@ static void test_a_level(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_built_in_worlds), cmocka_unit_test(test_threads_do_not_matter),
-        cmocka_unit_test(test_views_show_more_than_lines), cmocka_unit_test(test_walls_without_thickness),
-        cmocka_unit_test(test_a_level)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_built_in_worlds),
+                                       cmocka_unit_test(test_threads_do_not_matter),
+                                       cmocka_unit_test(test_ranks_are_in_the_order_of_lines),
+                                       cmocka_unit_test(test_views_show_more_than_lines),
+                                       cmocka_unit_test(test_walls_without_thickness),
+                                       cmocka_unit_test(test_a_level)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

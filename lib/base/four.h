@@ -56,6 +56,27 @@ ENF_PART_OF_WIDE enf_four enf_four_min(enf_four a, enf_four b) {
     return enf_four_choose(a < b, a, b);
 }
 
+/// The first three columns of four rows.
+ENF_PART_OF_WIDE void enf_four_turn(const enf_four rows[4], enf_four columns[3]) {
+#if defined(__clang__)
+    const enf_four low = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6),
+                   high = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7),
+                   next_low = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6),
+                   next_high = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
+    columns[0] = __builtin_shufflevector(low, next_low, 0, 1, 4, 5);
+    columns[1] = __builtin_shufflevector(high, next_high, 0, 1, 4, 5);
+    columns[2] = __builtin_shufflevector(low, next_low, 2, 3, 6, 7);
+#else
+    const enf_four low = __builtin_shuffle(rows[0], rows[1], (enf_four_mask){0, 4, 2, 6}),
+                   high = __builtin_shuffle(rows[0], rows[1], (enf_four_mask){1, 5, 3, 7}),
+                   next_low = __builtin_shuffle(rows[2], rows[3], (enf_four_mask){0, 4, 2, 6}),
+                   next_high = __builtin_shuffle(rows[2], rows[3], (enf_four_mask){1, 5, 3, 7});
+    columns[0] = __builtin_shuffle(low, next_low, (enf_four_mask){0, 1, 4, 5});
+    columns[1] = __builtin_shuffle(high, next_high, (enf_four_mask){0, 1, 4, 5});
+    columns[2] = __builtin_shuffle(low, next_low, (enf_four_mask){2, 3, 6, 7});
+#endif
+}
+
 /// Bits 0 to 3.
 ENF_PART_OF_WIDE unsigned enf_four_bits(enf_four_mask mask) {
     const enf_four_mask bits = mask & (enf_four_mask){1, 2, 4, 8};

@@ -2,6 +2,7 @@
 #include "visibility/air_parts.h"
 
 #include "base/array.h"
+#include "base/parallel.h"
 #include "format/frame.h"
 #include "visibility/distinct.h"
 #include "visibility/fine_vertices.h"
@@ -38,7 +39,6 @@ typedef struct slicer {
     double (*corners)[3]; ///< of the pieces
     int32_t corner_count;
     size_t corner_capacity;
-    enf_distinct distinct;
 } slicer;
 
 static double height_above(const enf_air_node *node, const double point[3]) {
@@ -159,17 +159,87 @@ static bool take_fine_cell(slicer *slicer, const enf_file_view *view, int32_t fi
     return true;
 }
 
-static bool slice_all(slicer *slicer, const enf_file_view *view) {
+static bool slice(slicer *slicer, const enf_file_view *view, int32_t begin, int32_t end) {
     enf_fine_vertices list = {0};
     bool good = true;
     int32_t root = slicer->tree->node_count > 0 ? 0 : -1;
-    for (int32_t fine = 0; good && fine < view->fine_count; fine++) {
+    for (int32_t fine = begin; good && fine < end; fine++) {
         body body;
         slicer->cell = view->fine_cell[fine];
         if (slicer->cell < 0) continue;
         good = take_fine_cell(slicer, view, fine, &list, &body) && sink(slicer, root, &body);
     }
     free(list.vertices);
+    return good;
+}
+
+static void free_slicer(slicer *slicer) {
+    free(slicer->stack);
+    free(slicer->cap);
+    free(slicer->pieces);
+    free(slicer->corners);
+}
+
+// ---------------------------------------------------------------------------------------------- threads
+
+enum { SHARES = 64 }; ///< of the fine cells, however many threads there are
+
+typedef struct slicing {
+    const enf_air_tree *tree;
+    const enf_file_view *view;
+    slicer slicers[SHARES];
+    bool good[SHARES];
+} slicing;
+
+static int32_t first_of(const slicing *slicing, int32_t share) {
+    return (int32_t)((int64_t)slicing->view->fine_count * share / SHARES);
+}
+
+static void slice_share(void *user, int32_t share, int thread) {
+    slicing *slicing = user;
+    (void)thread;
+    slicing->slicers[share] = (slicer){.tree = slicing->tree};
+    slicing->good[share] = slice(&slicing->slicers[share], slicing->view, first_of(slicing, share),
+                                 first_of(slicing, share + 1));
+}
+
+/// The pieces of all shares, one after the other.
+typedef struct pieces {
+    piece *items;
+    int32_t count;
+    double (*corners)[3];
+    int32_t corner_count;
+} pieces;
+
+static void append(pieces *all, const slicer *slicer) {
+    for (int32_t i = 0; i < slicer->piece_count; i++) {
+        all->items[all->count] = slicer->pieces[i];
+        all->items[all->count++].first += all->corner_count;
+    }
+    memcpy(all->corners + all->corner_count, slicer->corners,
+           (size_t)slicer->corner_count * sizeof *all->corners);
+    all->corner_count += slicer->corner_count;
+}
+
+/// False without memory; free *all in any case.
+static bool slice_all(pieces *all, const enf_air_tree *tree, const enf_file_view *view, int threads) {
+    const enf_crew crew = {.threads = threads};
+    slicing slicing = {.tree = tree, .view = view};
+    size_t count = 0, corner_count = 0;
+    bool good = true;
+    enf_parallel_for(&crew, SHARES, slice_share, &slicing);
+    for (int i = 0; i < SHARES; i++) {
+        count += (size_t)slicing.slicers[i].piece_count;
+        corner_count += (size_t)slicing.slicers[i].corner_count;
+        good = good && slicing.good[i];
+    }
+    all->items = enf_array_new(count, sizeof *all->items);
+    all->corners = enf_array_new(corner_count, sizeof *all->corners);
+    good = good && all->items && all->corners && corner_count <= INT32_MAX;
+    for (int i = 0; i < SHARES; i++) {
+        if (good) append(all, &slicing.slicers[i]);
+        free_slicer(&slicing.slicers[i]);
+    }
     return good;
 }
 
@@ -183,55 +253,56 @@ static int compare_pieces(const void *a, const void *b) {
 }
 
 /// Drops the thin pieces of leafs that have no others: those are rock.
-static void drop_thin(slicer *slicer) {
+static void drop_thin(pieces *all) {
     int32_t kept = 0;
-    for (int32_t i = 0, end; i < slicer->piece_count; i = end) {
+    for (int32_t i = 0, end; i < all->count; i = end) {
         bool is_air = false;
-        for (end = i; end < slicer->piece_count && slicer->pieces[end].leaf == slicer->pieces[i].leaf; end++)
-            is_air = is_air || !slicer->pieces[end].is_thin;
-        for (int32_t k = i; is_air && k < end; k++) slicer->pieces[kept++] = slicer->pieces[k];
+        for (end = i; end < all->count && all->items[end].leaf == all->items[i].leaf; end++)
+            is_air = is_air || !all->items[end].is_thin;
+        for (int32_t k = i; is_air && k < end; k++) all->items[kept++] = all->items[k];
     }
-    slicer->piece_count = kept;
+    all->count = kept;
 }
 
 /// Copies the corners of pieces i..end-1, each once. False without memory.
-static bool put_corners(enf_bodies *parts, slicer *slicer, int32_t begin, int32_t end) {
+static bool put_corners(enf_bodies *parts, const pieces *all, int32_t begin, int32_t end,
+                        enf_distinct *distinct) {
     int32_t first = parts->corner_first[parts->count], made = first;
     for (int32_t i = begin; i < end; i++) {
-        memcpy(parts->corners + made, slicer->corners + slicer->pieces[i].first,
-               (size_t)slicer->pieces[i].count * sizeof *parts->corners);
-        made += slicer->pieces[i].count;
+        memcpy(parts->corners + made, all->corners + all->items[i].first,
+               (size_t)all->items[i].count * sizeof *parts->corners);
+        made += all->items[i].count;
     }
-    const int32_t kept = enf_distinct_keep(&slicer->distinct, parts->corners + first, made - first);
+    const int32_t kept = enf_distinct_keep(distinct, parts->corners + first, made - first);
     parts->corner_first[parts->count + 1] = first + kept;
     return kept >= 0;
 }
 
-static bool join_pieces(enf_air_parts *air, slicer *slicer, int32_t cell_count) {
+static bool join_pieces(enf_air_parts *air, const pieces *all, int32_t leaf_count, int32_t cell_count) {
     enf_bodies *parts = &air->bodies;
-    size_t pieces = (size_t)slicer->piece_count;
-    size_t leafs = (size_t)slicer->tree->leaf_count;
+    enf_distinct distinct = {0};
+    const size_t pieces = (size_t)all->count, leafs = (size_t)leaf_count;
     parts->owner_count = cell_count;
     air->leaf_of = enf_array_new(leafs, sizeof *air->leaf_of);
     parts->cell_first = enf_array_new(leafs + 1, sizeof *parts->cell_first);
     parts->owner = enf_array_new(pieces, sizeof *parts->owner);
     parts->corner_first = enf_array_new(pieces + 1, sizeof *parts->corner_first);
-    parts->corners = enf_array_new((size_t)slicer->corner_count, sizeof *parts->corners);
+    parts->corners = enf_array_new((size_t)all->corner_count, sizeof *parts->corners);
     air->lost = enf_array_new((size_t)cell_count, sizeof *air->lost);
     bool *found = enf_array_zeroed((size_t)cell_count, sizeof *found);
     bool good = air->leaf_of && parts->cell_first && parts->owner && parts->corner_first && parts->corners &&
                 air->lost && found;
     if (good) parts->corner_first[0] = 0;
-    for (int32_t leaf = 0, i = 0; good && leaf < slicer->tree->leaf_count; leaf++) {
-        bool is_air = i < slicer->piece_count && slicer->pieces[i].leaf == leaf;
+    for (int32_t leaf = 0, i = 0; good && leaf < leaf_count; leaf++) {
+        bool is_air = i < all->count && all->items[i].leaf == leaf;
         air->leaf_of[leaf] = is_air ? parts->cell_count++ : -1;
         if (is_air) parts->cell_first[air->leaf_of[leaf]] = parts->count;
-        for (int32_t end; i < slicer->piece_count && slicer->pieces[i].leaf == leaf; i = end) {
-            const piece *piece = &slicer->pieces[i];
-            for (end = i; end < slicer->piece_count && slicer->pieces[end].leaf == leaf &&
-                          slicer->pieces[end].cell == piece->cell;)
+        for (int32_t end; i < all->count && all->items[i].leaf == leaf; i = end) {
+            const piece *piece = &all->items[i];
+            for (end = i;
+                 end < all->count && all->items[end].leaf == leaf && all->items[end].cell == piece->cell;)
                 end++;
-            good = good && put_corners(parts, slicer, i, end);
+            good = good && put_corners(parts, all, i, end, &distinct);
             parts->owner[parts->count++] = piece->cell;
             found[piece->cell] = true;
         }
@@ -240,24 +311,22 @@ static bool join_pieces(enf_air_parts *air, slicer *slicer, int32_t cell_count) 
     for (int32_t c = 0; good && c < cell_count; c++)
         if (!found[c]) air->lost[air->lost_count++] = c;
     free(found);
+    free(distinct.slots);
     return good;
 }
 
 enf_status enf_air_parts_make(enf_air_parts *air, const enf_air_tree *tree, const enf_file_view *view,
-                              enf_error *error) {
-    slicer slicer = {.tree = tree};
+                              int threads, enf_error *error) {
+    pieces all = {0};
     *air = (enf_air_parts){0};
-    bool good = slice_all(&slicer, view);
+    bool good = slice_all(&all, tree, view, threads);
     if (good) {
-        qsort(slicer.pieces, (size_t)slicer.piece_count, sizeof *slicer.pieces, compare_pieces);
-        drop_thin(&slicer);
-        good = join_pieces(air, &slicer, view->cell_count) && enf_bodies_finish(&air->bodies);
+        qsort(all.items, (size_t)all.count, sizeof *all.items, compare_pieces);
+        drop_thin(&all);
+        good = join_pieces(air, &all, tree->leaf_count, view->cell_count) && enf_bodies_finish(&air->bodies);
     }
-    free(slicer.stack);
-    free(slicer.cap);
-    free(slicer.pieces);
-    free(slicer.corners);
-    free(slicer.distinct.slots);
+    free(all.items);
+    free(all.corners);
     return good ? ENF_OK : enf_fail_memory(error, "the parts of cells");
 }
 

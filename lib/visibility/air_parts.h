@@ -14,10 +14,10 @@ typedef struct enf_air_parts {
     int32_t *lost;
 } enf_air_parts;
 
-/// Cuts the fine cells of kept regions along the tree. Needs the exact part of the file. *air is
-/// overwritten; free it in any case.
+/// Cuts the fine cells of kept regions along the tree, on some threads: what comes out is the same for any
+/// number. Needs the exact part of the file. *air is overwritten; free it in any case.
 enf_status enf_air_parts_make(enf_air_parts *air, const enf_air_tree *tree, const enf_file_view *view,
-                              enf_error *error);
+                              int threads, enf_error *error);
 void enf_air_parts_free(enf_air_parts *air);
 
 #endif

@@ -83,6 +83,22 @@ static double cost_of(const census *census) {
            worth_of_taken * census->counts[SIDE_ON];
 }
 
+/// Counts the sides of a plane, and finds its cost, if that is below `least`; false as soon as it can't be.
+static bool find_cost(const builder *builder, const int32_t *part, int32_t count, const plane *plane,
+                      double least, census *census, double *cost) {
+    *census = (struct census){{0}};
+    for (int32_t i = 0; i < count; i++) {
+        const side side = find_side(builder, part[i], plane);
+        census->counts[side]++;
+        if (side == SIDE_BOTH && cost_of_cut * census->counts[SIDE_BOTH] -
+                                         worth_of_taken * (census->counts[SIDE_ON] + count - i - 1) >=
+                                     least)
+            return false;
+    }
+    *cost = cost_of(census);
+    return *cost < least;
+}
+
 static int compare_doubles(const void *a, const void *b) {
     double one = *(const double *)a, other = *(const double *)b;
     return one < other ? -1 : one > other;
@@ -126,9 +142,9 @@ static plane choose(builder *builder, const int32_t *part, int32_t count, int de
         plane next = plane_of(&builder->walls->walls[wall]);
         if (is_known(builder, &next, tried, tried_count)) continue;
         tried[tried_count++] = wall;
-        struct census counted = count_sides(builder, part, count, &next);
-        double cost = cost_of(&counted);
-        if (cost >= least) continue;
+        struct census counted;
+        double cost;
+        if (!find_cost(builder, part, count, &next, least, &counted, &cost)) continue;
         least = cost;
         best = next;
         *census = counted;

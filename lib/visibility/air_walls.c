@@ -46,6 +46,40 @@ bool enf_walls_add(enf_walls *walls, const enf_wall *like, const double (*corner
     return true;
 }
 
+/// A plane on a grid: its normal, which points up the first axis that it can, and its offset.
+typedef struct grid_plane {
+    int64_t at[4];
+} grid_plane;
+
+static const double grid_steps = 0x1p20; ///< from 0 to 1, and to the size of the world
+
+static grid_plane find_grid_plane(const enf_wall *wall, double size) {
+    grid_plane plane;
+    for (int axis = 0; axis < 3; axis++) plane.at[axis] = llround(wall->normal[axis] * grid_steps);
+    plane.at[3] = size > 0 ? llround(wall->offset / size * grid_steps) : 0;
+    int first = 0;
+    while (first < 2 && plane.at[first] == 0) first++;
+    if (plane.at[first] < 0)
+        for (int k = 0; k < 4; k++) plane.at[k] = -plane.at[k];
+    return plane;
+}
+
+static int compare_planes(const void *a, const void *b) {
+    return memcmp(a, b, sizeof(grid_plane)); // any order will do
+}
+
+int32_t enf_walls_count_planes(const enf_walls *walls, double size) {
+    grid_plane *planes = enf_array_new((size_t)walls->count, sizeof *planes);
+    int32_t count = 0;
+    if (!planes) return -1;
+    for (int32_t i = 0; i < walls->count; i++) planes[i] = find_grid_plane(&walls->walls[i], size);
+    qsort(planes, (size_t)walls->count, sizeof *planes, compare_planes);
+    for (int32_t i = 0; i < walls->count; i++)
+        count += i == 0 || compare_planes(&planes[i - 1], &planes[i]) != 0;
+    free(planes);
+    return count;
+}
+
 void enf_walls_free(enf_walls *walls) {
     free(walls->walls);
     free(walls->corners);

@@ -28,6 +28,10 @@ enf_status enf_air_walls_make(enf_walls *walls, const enf_file_view *view, enf_e
 /// Adds a wall; the corners are copied, and held by a sphere. False without memory.
 bool enf_walls_add(enf_walls *walls, const enf_wall *like, const double (*corners)[3], int32_t count);
 
+/// How many planes the walls lie in, about: what is next to the same counts as such. `size` is the largest
+/// coordinate in magnitude. -1 without memory.
+int32_t enf_walls_count_planes(const enf_walls *walls, double size);
+
 void enf_walls_free(enf_walls *walls);
 
 #endif

@@ -181,14 +181,24 @@ static void close_corners(enf_body *body, int32_t count) {
     }
 }
 
-static void put_edge(enf_body *body, const double from[3], const double to[3], const double normal[3],
-                     const double other[3]) {
+/// Two faces that meet: their numbers and normals.
+typedef struct meeting {
+    int32_t faces[2];
+    const double *normals[2]; ///< of the one to the left of the edge, seen from outside, and of the other
+} meeting;
+
+static void put_edge(enf_body *body, const double from[3], const double to[3], const meeting *meeting) {
     double along[3], left[3], right[3];
     subtract(to, from, along);
-    cross(normal, along, left);
-    cross(along, other, right);
+    cross(meeting->normals[0], along, left);
+    cross(along, meeting->normals[1], right);
     if (!normalise(left) || !normalise(right)) return;
     int32_t index = body->edge_count++;
+    for (int side = 0; side < 2; side++) {
+        const int32_t face = meeting->faces[side];
+        if (face < ENF_BODY_FACES && index < 64)
+            body->edges[side][face / 4][1 << face % 4] |= UINT64_C(1) << index;
+    }
     for (int axis = 0; axis < 3; axis++) {
         body->from[axis][index] = from[axis];
         body->along[axis][index] = along[axis];
@@ -208,23 +218,75 @@ static void close_edges(enf_body *body) {
         }
 }
 
+/// Fills up to the next four, and finds the edges of sets of faces from those of each.
+static void close_faces(enf_body *body) {
+    if (body->face_count > ENF_BODY_FACES || body->edge_count > 64) body->face_count = 0;
+    for (int32_t i = body->face_count; i % 4; i++) {
+        for (int axis = 0; axis < 3; axis++) body->normal[axis][i] = 0;
+        body->offset[i] = 0;
+        for (int side = 0; side < 2; side++) body->edges[side][i / 4][1 << i % 4] = 0;
+    }
+    for (int32_t group = 0; 4 * group < body->face_count; group++)
+        for (int side = 0; side < 2; side++) {
+            uint64_t *edges = body->edges[side][group];
+            edges[0] = 0;
+            for (int set = 1; set < 16; set++) edges[set] = edges[set & (set - 1)] | edges[set & -set];
+        }
+}
+
 /// Faces that meet at an angle smaller than this are one.
 static const double flat_angle = 0x1p-20;
 
+static bool are_one(const face *face, const struct face *other) {
+    double sine[3];
+    cross(face->normal, other->normal, sine);
+    return enf_dot(sine, sine) < flat_angle * flat_angle;
+}
+
+static void put_face(enf_body *body, const double normal[3], double offset) {
+    const int32_t index = body->face_count++;
+    if (index >= ENF_BODY_FACES) return;
+    for (int axis = 0; axis < 3; axis++) body->normal[axis][index] = normal[axis];
+    body->offset[index] = offset;
+    for (int side = 0; side < 2; side++) body->edges[side][index / 4][1 << index % 4] = 0;
+}
+
+/// The number of the first face that each is one with.
+static void number_faces(enf_body *body, const hull *hull, int32_t *numbers) {
+    int32_t queue[FACES_MOST];
+    for (int32_t i = 0; i < hull->face_count; i++) numbers[i] = -1;
+    for (int32_t i = 0; i < hull->face_count; i++) {
+        int32_t count = 0;
+        if (hull->faces[i].is_gone || numbers[i] >= 0) continue;
+        numbers[i] = body->face_count;
+        queue[count++] = i;
+        for (int32_t at = 0; at < count; at++) {
+            const face *face = &hull->faces[queue[at]];
+            for (int k = 0; k < 3; k++) {
+                const int32_t next = hull->face_of[face->corner[(k + 1) % 3]][face->corner[k]];
+                if (numbers[next] >= 0 || !are_one(face, &hull->faces[next])) continue;
+                numbers[next] = body->face_count;
+                queue[count++] = next;
+            }
+        }
+        put_face(body, hull->faces[i].normal, hull->faces[i].offset);
+    }
+}
+
 static bool take_hull(enf_body *body, const hull *hull) {
     bool is_corner[POINTS_MOST] = {false};
-    int32_t count = 0;
+    int32_t count = 0, numbers[FACES_MOST];
+    number_faces(body, hull, numbers);
     for (int32_t i = 0; i < hull->face_count; i++) {
         const face *face = &hull->faces[i];
         for (int k = 0; !face->is_gone && k < 3; k++) {
-            int32_t a = face->corner[k], b = face->corner[(k + 1) % 3];
-            const struct face *other = &hull->faces[hull->face_of[b][a]];
-            double sine[3];
+            int32_t a = face->corner[k], b = face->corner[(k + 1) % 3], opposite = hull->face_of[b][a];
+            const struct face *other = &hull->faces[opposite];
             is_corner[a] = true;
-            cross(face->normal, other->normal, sine);
-            if (a > b || enf_dot(sine, sine) < flat_angle * flat_angle) continue;
+            if (a > b || are_one(face, other)) continue;
             if (body->edge_count == ENF_BODY_EDGES - 4) return false;
-            put_edge(body, hull->points[a], hull->points[b], face->normal, other->normal);
+            put_edge(body, hull->points[a], hull->points[b],
+                     &(meeting){{numbers[i], numbers[opposite]}, {face->normal, other->normal}});
         }
     }
     for (int32_t i = 0; i < hull->count; i++) {
@@ -239,7 +301,12 @@ static bool take_hull(enf_body *body, const hull *hull) {
 
 /// The box as the body.
 static void take_box(enf_body *body) {
-    body->edge_count = 0;
+    double normals[6][3] = {{0}}; // up each axis, and down
+    body->edge_count = body->face_count = 0;
+    for (int k = 0; k < 6; k++) {
+        normals[k][k % 3] = k < 3 ? 1 : -1;
+        put_face(body, normals[k], normals[k][k % 3] * body->middle[k % 3] + body->half[k % 3]);
+    }
     for (int i = 0; i < 8; i++)
         for (int axis = 0; axis < 3; axis++)
             body->at[axis][i] = body->middle[axis] + (i >> axis & 1 ? body->half[axis] : -body->half[axis]);
@@ -247,16 +314,15 @@ static void take_box(enf_body *body) {
         for (int i = 0; i < 4; i++) { // four edges along each axis
             int u = (axis + 1) % 3, v = (axis + 2) % 3, low = (i & 1) << u | (i >> 1) << v,
                 high = low | 1 << axis;
-            double from[3], to[3], one[3] = {0}, other[3] = {0};
+            const int one = i & 1 ? u : 3 + u, other = i >> 1 ? v : 3 + v;
+            double from[3], to[3];
             for (int k = 0; k < 3; k++) {
                 from[k] = body->at[k][low];
                 to[k] = body->at[k][high];
             }
-            one[u] = i & 1 ? 1 : -1;
-            other[v] = i >> 1 ? 1 : -1;
-            bool turns =
-                (i & 1) == i >> 1; // the first face has to lie to the left of the edge, seen from outside
-            put_edge(body, from, to, turns ? one : other, turns ? other : one);
+            const bool turns = (i & 1) == i >> 1; // the first face has to lie to the left of the edge
+            const int left = turns ? one : other, right = turns ? other : one;
+            put_edge(body, from, to, &(meeting){{left, right}, {normals[left], normals[right]}});
         }
     close_corners(body, 8);
 }
@@ -319,9 +385,10 @@ void enf_body_make(enf_body *body, const double (*points)[3], int32_t count, dou
     hull hull;
     double kept[POINTS_MOST][3];
     find_box(body, points, count);
-    body->edge_count = 0;
+    body->edge_count = body->face_count = 0;
     const int32_t made = thin_out(&hull, points, count, tolerance / ROUNDS_MOST, kept);
     if (made < 0 || !make_hull(&hull, (const double(*)[3])kept, made, tolerance) || !take_hull(body, &hull))
         take_box(body);
     close_edges(body);
+    close_faces(body);
 }

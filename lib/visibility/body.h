@@ -7,7 +7,8 @@
 
 enum {
     ENF_BODY_CORNERS = 64, ///< a body that has more becomes the box around it
-    ENF_BODY_EDGES = 3 * ENF_BODY_CORNERS
+    ENF_BODY_EDGES = 3 * ENF_BODY_CORNERS,
+    ENF_BODY_FACES = 64
 };
 
 typedef struct enf_body {
@@ -20,6 +21,13 @@ typedef struct enf_body {
     double left[3][ENF_BODY_EDGES],
         right[3][ENF_BODY_EDGES]; ///< square to the edge into the two faces, of length 1: all of the body
                                   ///< lies in the wedge between them
+
+    int32_t face_count; ///< 0: they, or the edges, are too many, and they are not known
+    double normal[3][ENF_BODY_FACES], offset[ENF_BODY_FACES]; ///< up to the next four; of length 1
+
+    /// Bit by bit, the edges that have some of four faces to the left, and to the right, for all sets of
+    /// these.
+    uint64_t edges[2][ENF_BODY_FACES / 4][16];
     double at[3][ENF_BODY_CORNERS + ENF_OUTLINE_MORE];
 } enf_body;
 

@@ -4,9 +4,8 @@
 #include "base/array.h"
 #include "base/hash.h"
 #include "base/timer.h"
-#include "visibility/beams.h"
+#include "visibility/body_beams.h"
 #include "visibility/coding.h"
-#include "visibility/facing.h"
 
 #include <stdlib.h>
 
@@ -19,11 +18,11 @@ typedef struct cast_result {
 typedef struct casting {
     enf_body_cast *cast;
     double deadline;
-    enf_beams **beams;    ///< per thread
-    cast_result *results; ///< per owner
-    int64_t *cost;        ///< per owner: the portals of its cells
-    bool *begun;          ///< per owner
-    enf_follows follows;
+    enf_body_ways ways;
+    enf_body_beams **beams; ///< per thread
+    cast_result *results;   ///< per owner
+    int64_t *cost;          ///< per owner: the portals of its cells
+    bool *begun;            ///< per owner
 } casting;
 
 // ---------------------------------------------------------------------------------------------- jobs
@@ -31,15 +30,15 @@ typedef struct casting {
 static enf_status run_owner(void *user, int32_t owner, int thread, bool *late, enf_error *error) {
     const casting *casting = user;
     const enf_body_cast *cast = casting->cast;
-    enf_beams *beams = casting->beams[thread];
+    enf_body_beams *beams = casting->beams[thread];
     cast_result *result = &casting->results[owner];
-    int64_t visits = enf_beams_visits(beams);
+    int64_t visits = enf_body_beams_visits(beams);
     *late = result->late = !cast->by_facing && enf_timer_now() > casting->deadline;
     if (result->late || cast->by_facing)
-        enf_beams_face_owner(beams, cast->bodies, owner, enf_bits_row(&cast->met, owner));
+        enf_body_beams_face(beams, owner, enf_bits_row(&cast->met, owner));
     else
-        enf_beams_cast_owner(beams, cast->bodies, owner, enf_bits_row(&cast->met, owner));
-    result->visits = enf_beams_visits(beams) - visits;
+        enf_body_beams_cast(beams, owner, enf_bits_row(&cast->met, owner));
+    result->visits = enf_body_beams_visits(beams) - visits;
     (void)error;
     return ENF_OK;
 }
@@ -63,35 +62,31 @@ static bool decode_owner(void *user, int32_t owner, enf_reader *reader) {
 
 // ---------------------------------------------------------------------------------------------- all
 
-static bool follows(const void *user, int32_t portal, int32_t next) {
-    return enf_portals_face(user, portal, next);
-}
-
 static bool make_casting(casting *casting, int threads) {
     enf_body_cast *cast = casting->cast;
     const int32_t owners = cast->bodies->owner_count;
     casting->results = enf_array_zeroed((size_t)owners, sizeof *casting->results);
     casting->cost = enf_array_zeroed((size_t)owners, sizeof *casting->cost);
     casting->begun = enf_array_zeroed((size_t)owners, sizeof *casting->begun);
-    casting->beams = enf_array_zeroed((size_t)threads, sizeof(enf_beams *));
+    casting->beams = enf_array_zeroed((size_t)threads, sizeof(enf_body_beams *));
     if (!enf_bits_new(&cast->met, owners, owners) ||
-        !enf_follows_make(&casting->follows, cast->shapes->graph, follows, cast->shapes) ||
-        !casting->results || !casting->cost || !casting->begun || !casting->beams)
+        !enf_body_ways_make(&casting->ways, cast->shapes, cast->bodies, cast->order) || !casting->results ||
+        !casting->cost || !casting->begun || !casting->beams)
         return false;
     for (int i = 0; i < threads; i++) {
-        casting->beams[i] = enf_beams_new(cast->shapes, NULL, &casting->follows);
+        casting->beams[i] = enf_body_beams_new(&casting->ways);
         if (!casting->beams[i]) return false;
     }
     return true;
 }
 
 static void free_casting(casting *casting, int threads) {
-    for (int i = 0; casting->beams && i < threads; i++) enf_beams_free(casting->beams[i]);
+    for (int i = 0; casting->beams && i < threads; i++) enf_body_beams_free(casting->beams[i]);
     free(casting->beams);
     free(casting->results);
     free(casting->cost);
     free(casting->begun);
-    enf_follows_free(&casting->follows);
+    enf_body_ways_free(&casting->ways);
 }
 
 static void find_cost(const casting *casting) {
@@ -108,7 +103,7 @@ static void sum_up(const casting *casting) {
     enf_body_cast *cast = casting->cast;
     for (int32_t o = 0; o < cast->bodies->owner_count; o++) {
         bool none = casting->cost[o] > 0 && !casting->begun[o];
-        if (none) enf_beams_face_owner(casting->beams[0], cast->bodies, o, enf_bits_row(&cast->met, o));
+        if (none) enf_body_beams_face(casting->beams[0], o, enf_bits_row(&cast->met, o));
         cast->visits += casting->results[o].visits;
         cast->owners_budgeted += none || casting->results[o].late;
     }
@@ -124,10 +119,17 @@ static void symmetrise(enf_bits *met) {
 }
 
 /// What the results depend on, besides the graph.
-static uint64_t find_key(const enf_bodies *bodies) {
+static uint64_t find_key(const enf_body_cast *cast) {
+    const enf_bodies *bodies = cast->bodies;
     const size_t corners = (size_t)bodies->corner_first[bodies->count] * sizeof *bodies->corners;
-    const uint64_t key = enf_hash64(bodies->owner, (size_t)bodies->count * sizeof *bodies->owner, 0);
-    return enf_hash64(bodies->corners, corners, key);
+    uint64_t key = enf_hash64(bodies->owner, (size_t)bodies->count * sizeof *bodies->owner, 0);
+    key = enf_hash64(bodies->corners, corners, key);
+    for (int32_t i = 0; cast->order && i < cast->order->node_count; i++) {
+        const enf_air_order_node *node = &cast->order->nodes[i];
+        key = enf_hash64(node->normal, sizeof node->normal, key);
+        key = enf_hash64(&node->above, sizeof node->above, key);
+    }
+    return key;
 }
 
 enf_status enf_body_cast_run(enf_body_cast *cast, enf_workplace *place, enf_error *error) {
@@ -138,7 +140,7 @@ enf_status enf_body_cast_run(enf_body_cast *cast, enf_workplace *place, enf_erro
     if (!status) {
         find_cost(&casting);
         const enf_work work = {.stage = ENF_STAGE_BODIES,
-                               .key = find_key(cast->bodies),
+                               .key = find_key(cast),
                                .cell_count = cast->bodies->owner_count,
                                .cost = casting.cost,
                                .user = &casting,

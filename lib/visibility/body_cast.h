@@ -3,6 +3,7 @@
 #ifndef ENF_VISIBILITY_BODY_CAST_H
 #define ENF_VISIBILITY_BODY_CAST_H
 
+#include "visibility/air_order.h"
 #include "visibility/bits.h"
 #include "visibility/bodies.h"
 #include "visibility/shapes.h"
@@ -11,7 +12,8 @@
 typedef struct enf_body_cast {
     const enf_shapes *shapes;
     const enf_bodies *bodies;
-    bool by_facing; ///< all owners see all that faces them; no beams are cast
+    const enf_air_order *order; ///< of the cells; null: there is none
+    bool by_facing;             ///< all owners see all that faces them; no beams are cast
 
     // Made; free them in any case.
     enf_bits met; ///< bit j of row i: the beams of owner i meet a body of owner j, and the other way round

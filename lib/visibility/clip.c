@@ -31,26 +31,31 @@ typedef struct polygon {
     const double *corners; ///< what is in fourth place means nothing
 } polygon;
 
-typedef double piece[CORNERS_MOST * 3 / 2][4];
+typedef double piece[CORNERS_MOST * 3 / 2 + ENF_FOUR][4];
 
 /// That many bits, 1 to 64.
 ENF_PART_OF_WIDE uint64_t first_bits(int32_t count) {
     return ~UINT64_C(0) >> (64 - count);
 }
 
-/// How high the corners lie above a cut. Which are in front?
-ENF_PART_OF_WIDE uint64_t find_heights(const polygon *polygon, const enf_cut *cut, double *heights) {
-    uint64_t inside = 0;
-    const double *corner = polygon->corners;
-    for (int32_t i = 0; i < polygon->count; i++, corner += polygon->stride) {
-        heights[i] = enf_dot(cut->normal, corner) - cut->least;
-        inside |= (uint64_t)(heights[i] >= 0) << i;
-    }
-    return inside;
-}
-
 ENF_PART_OF_WIDE enf_four corner_of(const polygon *polygon, int32_t index) {
     return enf_four_load(polygon->corners + index * polygon->stride);
+}
+
+/// How high the corners lie above a cut, four at a time; what is above the count, up to the next four, means
+/// nothing. Which are in front?
+ENF_PART_OF_WIDE uint64_t find_heights(const polygon *polygon, const enf_cut *cut, double *heights) {
+    uint64_t inside = 0;
+    for (int32_t i = 0; i < polygon->count; i += ENF_FOUR) {
+        enf_four at[ENF_FOUR], along[3];
+        for (int k = 0; k < ENF_FOUR; k++) at[k] = corner_of(polygon, i + k);
+        enf_four_turn(at, along);
+        const enf_four height =
+            along[0] * cut->normal[0] + along[1] * cut->normal[1] + along[2] * cut->normal[2] - cut->least;
+        enf_four_store(heights + i, height);
+        inside |= (uint64_t)enf_four_bits(height >= 0) << i;
+    }
+    return inside & first_bits(polygon->count);
 }
 
 /// The point of the edge between two corners that is in the cut's plane.

@@ -23,6 +23,20 @@ static int compare_xy(const void *a, const void *b) {
     return compare(a, b, 0, 1);
 }
 
+enum { FEW = 24 };
+
+/// As qsort does it, where that costs more than it gains.
+static void sort_few(double (*points)[3], int32_t count, int (*compare)(const void *, const void *)) {
+    for (int32_t i = 1; i < count; i++) {
+        double point[3];
+        int32_t at = i;
+        memcpy(point, points[i], sizeof point);
+        for (; at > 0 && compare(point, points[at - 1]) < 0; at--)
+            memcpy(points[at], points[at - 1], sizeof point);
+        memcpy(points[at], point, sizeof point);
+    }
+}
+
 /// Twice the area of a, b, c; positive if they turn from axis u to axis v.
 static double turn(const double a[3], const double b[3], const double c[3], int u, int v) {
     return (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
@@ -55,7 +69,10 @@ int32_t enf_flat_hull(double (*points)[3], int32_t count, const double normal[3]
         if (count == 1) memcpy(hull[0], points[0], sizeof *hull);
         return count;
     }
-    qsort(points, (size_t)count, sizeof *points, compares[along]);
+    if (count <= FEW)
+        sort_few(points, count, compares[along]);
+    else
+        qsort(points, (size_t)count, sizeof *points, compares[along]);
     for (int32_t i = 0; i < count; i++) made = add(hull, made, 0, points[i], u, v);
     int32_t start = --made; // the last one begins the way back
     for (int32_t i = count - 1; i >= 0; i--) made = add(hull, made, start, points[i], u, v);

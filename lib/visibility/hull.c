@@ -27,12 +27,11 @@ static bool is_before(const point *a, const point *b, const int32_t axes[2]) {
     return a->at[u] < b->at[u] || (a->at[u] == b->at[u] && a->at[v] < b->at[v]);
 }
 
-static int32_t sort_corners(const enf_window *window, const int32_t axes[2], point *sorted, int32_t count) {
-    const enf_outline outline = enf_window_outline(window);
-    for (int32_t i = 0; i < window->count; i++) {
+static int32_t sort_corners(const enf_outline *outline, const int32_t axes[2], point *sorted, int32_t count) {
+    for (int32_t i = 0; i < outline->count; i++) {
         int32_t at = count++;
         point corner;
-        enf_outline_corner(&outline, i, corner.at);
+        enf_outline_corner(outline, i, corner.at);
         for (; at > 0 && is_before(&corner, &sorted[at - 1], axes); at--) sorted[at] = sorted[at - 1];
         sorted[at] = corner;
     }
@@ -47,10 +46,11 @@ static int32_t add_corner(const point **chain, int32_t made, int32_t start, cons
     return made + 1;
 }
 
-static void make_anew(enf_window *window, const enf_window *other, const int32_t axes[2]) {
+static void make_anew(enf_window *window, const enf_outline *other, const int32_t axes[2]) {
     point sorted[2 * ENF_WINDOW_MOST];
     const point *chain[2 * ENF_WINDOW_MOST + 2];
-    int32_t count = sort_corners(window, axes, sorted, 0), made = 0;
+    const enf_outline own = enf_window_outline(window);
+    int32_t count = sort_corners(&own, axes, sorted, 0), made = 0;
     count = sort_corners(other, axes, sorted, count);
     for (int32_t i = 0; i < count; i++) made = add_corner(chain, made, 0, &sorted[i], axes);
     const int32_t start = --made; // the last one begins the way back
@@ -84,7 +84,7 @@ ENF_PART_OF_WIDE void find_edges(const double *us, const double *vs, int32_t cou
 }
 
 /// Which corners of the other lie outside of the window; none if all are within the tolerance of it.
-ENF_PART_OF_WIDE uint64_t find_outside(const enf_window *window, const enf_window *other,
+ENF_PART_OF_WIDE uint64_t find_outside(const enf_window *window, const enf_outline *other,
                                        const int32_t axes[2], double tolerance) {
     const double *us = window->at[axes[0]], *vs = window->at[axes[1]];
     edges edges;
@@ -105,15 +105,35 @@ ENF_PART_OF_WIDE uint64_t find_outside(const enf_window *window, const enf_windo
     return outside & ((UINT64_C(1) << other->count) - 1);
 }
 
-/// Which edges of a window, bit by bit, a point lies outside of; also those that it is in line with.
-static void find_sides(const enf_window *window, double u, double v, const int32_t axes[2], uint64_t *out,
-                       uint64_t *in_line) {
-    const double *us = window->at[axes[0]], *vs = window->at[axes[1]];
+/// The corners of two windows, in the coordinate plane, and the hull of those of one and some of the other.
+typedef struct rim {
+    double u[2 * (EDGES_MOST + ENF_OUTLINE_MORE)], v[2 * (EDGES_MOST + ENF_OUTLINE_MORE)];
+    int32_t count;
+    uint8_t corners[2 * EDGES_MOST + 2]; ///< round the hull; the first one again at the end
+} rim;
+
+static void make_rim(const enf_window *window, const enf_outline *other, const int32_t axes[2], rim *rim) {
+    const int32_t count = window->count;
+    enf_outline_copy(rim->u, window->at[axes[0]], count);
+    enf_outline_copy(rim->v, window->at[axes[1]], count);
+    enf_outline_copy(rim->u + count, other->at[axes[0]], other->count);
+    enf_outline_copy(rim->v + count, other->at[axes[1]], other->count);
+    for (int32_t i = 0; i < count; i++) rim->corners[i] = (uint8_t)i;
+    rim->corners[count] = 0;
+    rim->count = count;
+}
+
+/// Which edges of the rim, bit by bit, a point lies outside of; also those that it is in line with.
+static void find_sides(const rim *rim, double u, double v, uint64_t *out, uint64_t *in_line) {
+    double from_u = rim->u[rim->corners[0]], from_v = rim->v[rim->corners[0]];
     *out = *in_line = 0;
-    for (int32_t i = 0; i < window->count; i++) {
-        const double turn = (us[i + 1] - us[i]) * (v - vs[i]) - (vs[i + 1] - vs[i]) * (u - us[i]);
+    for (int32_t i = 0; i < rim->count; i++) {
+        const double to_u = rim->u[rim->corners[i + 1]], to_v = rim->v[rim->corners[i + 1]];
+        const double turn = (to_u - from_u) * (v - from_v) - (to_v - from_v) * (u - from_u);
         *out |= (uint64_t)(turn < 0) << i;
         *in_line |= (uint64_t)(turn <= 0) << i;
+        from_u = to_u;
+        from_v = to_v;
     }
 }
 
@@ -132,38 +152,52 @@ static bool find_run(uint64_t some, uint64_t others, int32_t count, int32_t *fir
     return !(some & ~(run | run >> count) & all);
 }
 
-/// Puts a point in the place of a run of edges: between the corner where it begins, and that where it ends.
-static void replace_run(double *along, int32_t count, int32_t first, int32_t after, double point) {
+/// Puts a corner in the place of a run of edges: between that where it begins and that where it ends.
+static void replace_run(rim *rim, int32_t first, int32_t after, int32_t corner) {
+    uint8_t *corners = rim->corners;
     if (first < after) {
-        memmove(along + first + 2, along + after, (size_t)(count - after) * sizeof *along);
-        along[first + 1] = point;
-        enf_outline_close(along, count - (after - first) + 2);
+        memmove(corners + first + 2, corners + after, (size_t)(rim->count - after) * sizeof *corners);
+        corners[first + 1] = (uint8_t)corner;
+        rim->count -= after - first - 2;
     } else { // from the end, round to the beginning; `after` may be that
-        memmove(along, along + after, (size_t)(first - after + 1) * sizeof *along);
-        along[first - after + 1] = point;
-        enf_outline_close(along, first - after + 2);
+        memmove(corners, corners + after, (size_t)(first - after + 1) * sizeof *corners);
+        corners[first - after + 1] = (uint8_t)corner;
+        rim->count = first - after + 2;
     }
+    corners[rim->count] = corners[0];
 }
 
-/// False if the rest is to be done anew.
-static bool add_corners(enf_window *window, const enf_window *other, uint64_t corners,
-                        const int32_t axes[2]) {
+/// Adds corners of the other, whose places begin at `begin`. False if the rest is to be done anew.
+static bool add_corners(rim *rim, uint64_t corners, int32_t begin) {
     for (; corners; corners &= corners - 1) {
-        const int32_t k = __builtin_ctzll(corners);
+        const int32_t corner = begin + __builtin_ctzll(corners);
         uint64_t out, in_line;
         int32_t first, after;
-        if (window->count > EDGES_MOST) return false;
-        find_sides(window, other->at[axes[0]][k], other->at[axes[1]][k], axes, &out, &in_line);
+        if (rim->count > EDGES_MOST) return false;
+        find_sides(rim, rim->u[corner], rim->v[corner], &out, &in_line);
         if (!out) continue;
-        if (!find_run(out, in_line, window->count, &first, &after)) return false;
-        for (int axis = 0; axis < 3; axis++)
-            replace_run(window->at[axis], window->count, first, after, other->at[axis][k]);
-        window->count = first < after ? window->count - (after - first) + 2 : first - after + 2;
+        if (!find_run(out, in_line, rim->count, &first, &after)) return false;
+        replace_run(rim, first, after, corner);
     }
     return true;
 }
 
-static bool is_within(const enf_window *window, const enf_window *other, const int32_t axes[2],
+/// Makes the window what the rim says.
+static void take_rim(enf_window *window, const enf_outline *other, const rim *rim) {
+    const int32_t begin = window->count;
+    for (int axis = 0; axis < 3; axis++) {
+        double at[EDGES_MOST + 1];
+        for (int32_t i = 0; i < rim->count; i++) {
+            const int32_t corner = rim->corners[i];
+            at[i] = corner < begin ? window->at[axis][corner] : other->at[axis][corner - begin];
+        }
+        for (int32_t i = 0; i < rim->count; i++) window->at[axis][i] = at[i];
+        enf_outline_close(window->at[axis], rim->count);
+    }
+    window->count = rim->count;
+}
+
+static bool is_within(const enf_window *window, const enf_outline *other, const int32_t axes[2],
                       double tolerance) {
     const double *us = window->at[axes[0]], *vs = window->at[axes[1]];
     for (int32_t i = 0; i < window->count; i++) {
@@ -175,7 +209,7 @@ static bool is_within(const enf_window *window, const enf_window *other, const i
     return true;
 }
 
-ENF_WIDE_TOO bool enf_hull_extend(enf_window *window, const enf_window *other, const int32_t axes[2],
+ENF_WIDE_TOO bool enf_hull_extend(enf_window *window, const enf_outline *other, const int32_t axes[2],
                                   double tolerance) {
     if (window->count > EDGES_MOST || other->count > EDGES_MOST) {
         if (is_within(window, other, axes, tolerance)) return false;
@@ -188,6 +222,11 @@ ENF_WIDE_TOO bool enf_hull_extend(enf_window *window, const enf_window *other, c
     }
     const uint64_t outside = find_outside(window, other, axes, tolerance);
     if (!outside) return false;
-    if (!add_corners(window, other, outside, axes)) make_anew(window, other, axes);
+    rim rim;
+    make_rim(window, other, axes, &rim);
+    if (add_corners(&rim, outside, window->count))
+        take_rim(window, other, &rim);
+    else
+        make_anew(window, other, axes);
     return true;
 }

@@ -65,7 +65,8 @@ ENF_PART_OF_WIDE void turn_to(const enf_outline *other, const enf_four from[3], 
 }
 
 ENF_PART_OF_WIDE enf_four inverse_root(enf_four square) {
-    const enf_four roots = {sqrt(square[0]), sqrt(square[1]), sqrt(square[2]), sqrt(square[3])};
+    enf_four roots;
+    for (int lane = 0; lane < ENF_FOUR; lane++) roots[lane] = sqrt(square[lane]);
     return 1 / roots;
 }
 
@@ -161,11 +162,18 @@ ENF_PART_OF_WIDE void add_near_planes(enf_separators *separators, const passage 
     }
 }
 
-/// Four cuts, of which those that are good are added. (Not to branch here is worth it: there is no telling
-/// which they are.)
+/// Four cuts, of which those that are good are added: mostly some first ones, or all. (Not to branch between
+/// others is worth it: there is no telling which they are.)
 ENF_PART_OF_WIDE void add_good(enf_separators *separators, const enf_four normal[3], enf_four least,
                                enf_four_mask good) {
     int32_t index = separators->count;
+    const unsigned bits = enf_four_bits(good);
+    if ((bits & (bits + 1)) == 0) {
+        for (int axis = 0; axis < 3; axis++) enf_four_store(separators->normal[axis] + index, normal[axis]);
+        enf_four_store(separators->least + index, least);
+        separators->count += __builtin_popcount(bits);
+        return;
+    }
     for (int lane = 0; lane < ENF_FOUR; lane++) {
         for (int axis = 0; axis < 3; axis++) separators->normal[axis][index] = normal[axis][lane];
         separators->least[index] = least[lane];
@@ -267,55 +275,107 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
     enf_separators_between(separators, shapes, &one, from_portal, &two, to_portal);
 }
 
-/// Four edges of a body, and the two planes through each that touch the window, by their normals of any
-/// length.
-typedef struct body_edges {
-    enf_four a[3], left[3], right[3];
-    enf_four normals[2][3];
-} body_edges;
+/// Edges of a body, and the way to turn round each: twice its number, and 1 for backwards.
+typedef struct turns {
+    int32_t count;
+    uint16_t items[2 * ENF_BODY_EDGES + ENF_FOUR];
+} turns;
 
-/// Turns a plane on to a corner that lies behind it.
-ENF_PART_OF_WIDE void turn_on(enf_four normal[3], const enf_four way[3], const enf_four next[3]) {
-    const enf_four_mask behind = dot_four(normal, way) < 0;
-    for (int axis = 0; axis < 3; axis++) normal[axis] = enf_four_choose(behind, next[axis], normal[axis]);
+/// Edges of a body, bit by bit.
+typedef struct edge_set {
+    uint64_t left, right,
+        both; ///< some corner of the window is behind the face on this side; one is behind both
+} edge_set;
+
+ENF_PART_OF_WIDE edge_set find_behind(const passage *passage, const enf_body *body) {
+    const enf_outline *window = passage->one;
+    edge_set found = {0};
+    for (int32_t i = 0; i < window->count; i++) {
+        const double x = window->at[0][i], y = window->at[1][i], z = window->at[2][i];
+        uint64_t left = 0, right = 0;
+        for (int32_t first = 0; first < body->face_count; first += ENF_FOUR) {
+            const unsigned behind = enf_four_bits(
+                x * enf_four_load(body->normal[0] + first) + y * enf_four_load(body->normal[1] + first) +
+                    z * enf_four_load(body->normal[2] + first) <
+                enf_four_load(body->offset + first) - passage->shapes->tolerance);
+            left |= body->edges[0][first / ENF_FOUR][behind];
+            right |= body->edges[1][first / ENF_FOUR][behind];
+        }
+        found.left |= left;
+        found.right |= right;
+        found.both |= left & right;
+    }
+    return found;
 }
 
-/// As turn_to, both ways round.
-ENF_PART_OF_WIDE void turn_body_edges(const passage *passage, const enf_body *body, int32_t first,
+/// Backwards as far as edges of `one` go, forwards as far as those of `other` do.
+ENF_PART_OF_WIDE void list_turns(uint64_t one, uint64_t other, turns *turns) {
+    int32_t count = 0;
+    for (; one; one &= one - 1) turns->items[count++] = (uint16_t)(2 * __builtin_ctzll(one) + 1);
+    for (; other; other &= other - 1) turns->items[count++] = (uint16_t)(2 * __builtin_ctzll(other));
+    turns->count = count;
+}
+
+/// The edges that a plane may touch which has the window in front and the body behind. Among planes through
+/// an edge those with the body behind lie between its faces. If a corner of the window is behind both faces,
+/// it is behind all of them. If none is behind one face, planes that turn away from this face go on to have
+/// the window in front until they touch it: there is no need to look the other way round, and none to look
+/// at all where none is behind the other face, either.
+ENF_PART_OF_WIDE void choose_turns(const passage *passage, const enf_body *body, turns *turns) {
+    if (body->face_count > 0) {
+        const edge_set found = find_behind(passage, body);
+        list_turns(found.left & ~found.both, found.right & ~found.both, turns);
+    } else {
+        turns->count = 2 * body->edge_count;
+        for (int32_t i = 0; i < turns->count; i++) turns->items[i] = (uint16_t)i;
+    }
+    for (int lane = 0; lane < ENF_FOUR; lane++) turns->items[turns->count + lane] = 0;
+}
+
+/// Four of these edges, and the plane through each that touches the window, by its normal of any length.
+typedef struct body_edges {
+    enf_four a[3], left[3], right[3], normal[3];
+} body_edges;
+
+ENF_PART_OF_WIDE enf_four gather(const double *from, const int32_t *places) {
+    return (enf_four){from[places[0]], from[places[1]], from[places[2]], from[places[3]]};
+}
+
+/// As turn_to.
+ENF_PART_OF_WIDE void turn_body_edges(const passage *passage, const enf_body *body, const uint16_t *turns,
                                       body_edges *edges) {
     const enf_outline *window = passage->one;
-    enf_four edge[3], way[3], next[3], opposite[3];
+    const int32_t places[ENF_FOUR] = {turns[0] >> 1, turns[1] >> 1, turns[2] >> 1, turns[3] >> 1};
+    const enf_four_mask back = -(enf_four_mask){turns[0] & 1, turns[1] & 1, turns[2] & 1, turns[3] & 1};
+    enf_four edge[3], way[3], next[3];
     for (int axis = 0; axis < 3; axis++) {
-        edges->a[axis] = enf_four_load(body->from[axis] + first);
-        edge[axis] = enf_four_load(body->along[axis] + first);
-        edges->left[axis] = enf_four_load(body->left[axis] + first);
-        edges->right[axis] = enf_four_load(body->right[axis] + first);
+        edges->a[axis] = gather(body->from[axis], places);
+        edges->left[axis] = gather(body->left[axis], places);
+        edges->right[axis] = gather(body->right[axis], places);
+        edge[axis] = gather(body->along[axis], places);
+        edge[axis] = (enf_four)((enf_four_mask)edge[axis] ^ (back & INT64_MIN));
+        way[axis] = window->at[axis][0] - edges->a[axis];
     }
-    for (int32_t i = 0; i < window->count; i++) {
+    cross_four(edge, way, edges->normal);
+    for (int32_t i = 1; i < window->count; i++) {
         for (int axis = 0; axis < 3; axis++) way[axis] = window->at[axis][i] - edges->a[axis];
         cross_four(edge, way, next);
-        for (int axis = 0; axis < 3; axis++) {
-            opposite[axis] = -next[axis];
-            if (i > 0) continue;
-            edges->normals[0][axis] = next[axis];
-            edges->normals[1][axis] = opposite[axis];
-        }
-        turn_on(edges->normals[0], way, next);
-        turn_on(edges->normals[1], way, opposite);
+        const enf_four_mask behind = dot_four(edges->normal, way) < 0;
+        for (int axis = 0; axis < 3; axis++)
+            edges->normal[axis] = enf_four_choose(behind, next[axis], edges->normal[axis]);
     }
 }
 
 /// Adds those of four planes that part the body and the window. They have the body behind them if they do not
 /// come into the wedge of the two faces.
 ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passage *passage,
-                                        const body_edges *edges, const enf_four normal[3],
-                                        enf_four_mask good) {
-    good &= (dot_four(normal, edges->left) <= 0) & (dot_four(normal, edges->right) <= 0);
+                                        const body_edges *edges, enf_four_mask good) {
+    good &= (dot_four(edges->normal, edges->left) <= 0) & (dot_four(edges->normal, edges->right) <= 0);
     if (!enf_four_bits(good)) return;
     const double swing = find_swing(passage, passage->gap), tolerance = passage->shapes->tolerance;
-    const enf_four square = dot_four(normal, normal), inverse = inverse_root(square);
+    const enf_four square = dot_four(edges->normal, edges->normal), inverse = inverse_root(square);
     enf_four unit[3];
-    for (int axis = 0; axis < 3; axis++) unit[axis] = normal[axis] * inverse;
+    for (int axis = 0; axis < 3; axis++) unit[axis] = edges->normal[axis] * inverse;
     enf_four second;
     const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit, &second),
                    tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse,
@@ -328,23 +388,23 @@ ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passag
 /// The planes through edges of the body. `one` of the passage is the window, `other` the body.
 ENF_PART_OF_WIDE void add_body_planes(enf_separators *separators, const passage *passage,
                                       const enf_body *body) {
-    for (int32_t first = 0; first < body->edge_count; first += ENF_FOUR) {
-        if (separators->count > ENF_SEPARATORS_MOST - 2 * ENF_FOUR) return;
-        const enf_four_mask there = (enf_four_mask){0, 1, 2, 3} < (int64_t)(body->edge_count - first);
+    turns turns;
+    choose_turns(passage, body, &turns);
+    for (int32_t first = 0; first < turns.count; first += ENF_FOUR) {
+        if (separators->count > ENF_SEPARATORS_MOST - ENF_FOUR) return;
+        const enf_four_mask there = (enf_four_mask){0, 1, 2, 3} < (int64_t)(turns.count - first);
         body_edges edges;
-        turn_body_edges(passage, body, first, &edges);
-        for (int side = 0; side < 2; side++)
-            add_body_tangents(separators, passage, &edges, edges.normals[side], there);
+        turn_body_edges(passage, body, turns.items + first, &edges);
+        add_body_tangents(separators, passage, &edges, there);
     }
 }
 
 ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes,
-                                           const enf_body *body, const enf_outline *to, int32_t to_portal) {
-    const enf_shape *shape = &shapes->shapes[to_portal >> 1];
+                                           const enf_body *body, const enf_outline *to, int32_t to_portal,
+                                           const double middle[3], const double half[3]) {
     double apart[3], span = 0;
     for (int axis = 0; axis < 3; axis++) {
-        const double way = fabs(shape->middle[axis] - body->middle[axis]),
-                     halves = shape->half[axis] + body->half[axis];
+        const double way = fabs(middle[axis] - body->middle[axis]), halves = half[axis] + body->half[axis];
         apart[axis] = way > halves ? way - halves : 0;
         span += way + halves;
     }

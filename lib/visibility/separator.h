@@ -34,10 +34,12 @@ void enf_separators_between(enf_separators *separators, const enf_shapes *shapes
 void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, const enf_window *from,
                          int32_t from_portal, const enf_window *to, int32_t to_portal);
 
-/// The planes that part a body from `to`, a window of the directed portal `to_portal`, through an edge of one
-/// and a corner of the other: lines from the body that pass `to` stay in front from there on.
+/// The planes that part a body from `to`, a window of the directed portal `to_portal`, or of some in its
+/// plane, through an edge of one and a corner of the other: lines from the body that pass `to` stay in front
+/// from there on. A box that holds the window: its middle, and how far it reaches from there.
 void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes, const enf_body *body,
-                              const enf_outline *to, int32_t to_portal);
+                              const enf_outline *to, int32_t to_portal, const double middle[3],
+                              const double half[3]);
 
 /// May they leave something of the hull of these points? The box around them, middle and half, is asked
 /// first.

@@ -143,18 +143,15 @@ bool enf_shapes_make(enf_shapes *shapes, const enf_portal_graph *graph) {
     size_t corners = (size_t)graph->opening_corner[graph->opening_count];
     *shapes = (enf_shapes){.graph = graph};
     shapes->shapes = enf_array_zeroed((size_t)graph->opening_count, sizeof *shapes->shapes);
-    shapes->corners = enf_array_zeroed(corners + 1, sizeof *shapes->corners);
+    shapes->corners = enf_array_zeroed(corners + ENF_OUTLINE_MORE, sizeof *shapes->corners);
     shapes->outlines = enf_array_zeroed(corners + ENF_OUTLINE_MORE * ((size_t)graph->opening_count + 1),
                                         3 * sizeof *shapes->outlines);
-    shapes->cell_is_convex = enf_array_new((size_t)graph->cell_count, sizeof *shapes->cell_is_convex);
-    if (!shapes->shapes || !shapes->corners || !shapes->outlines || !shapes->cell_is_convex) return false;
+    if (!shapes->shapes || !shapes->corners || !shapes->outlines) return false;
     double size = measure_size(graph), bend = 0;
     int32_t first = 0;
     for (int32_t k = 0; k < graph->opening_count; k++) make_shape(shapes, k, &first, &bend);
     shapes->tolerance = size * relative_tolerance + 4 * bend;
     shapes->extent = 4 * size;
-    for (int32_t c = 0; c < graph->cell_count; c++)
-        shapes->cell_is_convex[c] = enf_portal_graph_is_convex(graph, c);
     return true;
 }
 
@@ -162,7 +159,6 @@ void enf_shapes_free(enf_shapes *shapes) {
     free(shapes->shapes);
     free(shapes->corners);
     free(shapes->outlines);
-    free(shapes->cell_is_convex);
     memset(shapes, 0, sizeof *shapes);
 }
 

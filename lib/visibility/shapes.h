@@ -19,9 +19,8 @@ typedef struct enf_shape {
 typedef struct enf_shapes {
     const enf_portal_graph *graph; ///< not owned
     enf_shape *shapes;             ///< per opening
-    double (*corners)[3]; ///< of outlines: the windings, or a rectangle around one with over 64; one more
+    double (*corners)[3]; ///< of outlines: the windings, or a rectangle around one with over 64; four more
     double *outlines;     ///< the same as outlines, three times count + ENF_OUTLINE_MORE a piece
-    bool *cell_is_convex; ///< per cell
 
     // World units, both.
     double tolerance; ///< of windows and planes: 2^-42 of the largest coordinate, and how far windings are

@@ -27,7 +27,10 @@ bool enf_sight_make(enf_sight *sight, const enf_shapes *shapes) {
     *sight = (enf_sight){.shapes = shapes, .clearance = shapes->extent / 4 * relative_clearance};
     sight->first = enf_array_new((size_t)graph->opening_count + 1, sizeof *sight->first);
     sight->edges = enf_array_new(corners, sizeof *sight->edges);
-    if (!sight->first || !sight->edges) return false;
+    sight->cell_is_convex = enf_array_new((size_t)graph->cell_count, sizeof *sight->cell_is_convex);
+    if (!sight->first || !sight->edges || !sight->cell_is_convex) return false;
+    for (int32_t c = 0; c < graph->cell_count; c++)
+        sight->cell_is_convex[c] = enf_portal_graph_is_convex(graph, c);
     sight->first[0] = 0;
     for (int32_t k = 0; k < graph->opening_count; k++) {
         int32_t begin = graph->opening_corner[k], end = graph->opening_corner[k + 1], made = sight->first[k];
@@ -44,6 +47,7 @@ bool enf_sight_make(enf_sight *sight, const enf_shapes *shapes) {
 void enf_sight_free(enf_sight *sight) {
     free(sight->first);
     free(sight->edges);
+    free(sight->cell_is_convex);
     memset(sight, 0, sizeof *sight);
 }
 
@@ -62,7 +66,7 @@ static bool passes(const enf_sight *sight, const double line[6], int32_t portal)
 static int32_t find_exit(const enf_sight *sight, const double line[6], int32_t portal) {
     const enf_portal_graph *graph = sight->shapes->graph;
     int32_t cell = enf_portal_to(graph, portal);
-    if (!sight->shapes->cell_is_convex[cell]) return -1;
+    if (!sight->cell_is_convex[cell]) return -1;
     for (int32_t k = graph->cell_portal[cell]; k < graph->cell_portal[cell + 1]; k++) {
         int32_t next = graph->cell_portals[k];
         double towards = enf_dot(sight->shapes->shapes[next >> 1].normal, line);

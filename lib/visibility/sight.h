@@ -10,6 +10,7 @@ typedef struct enf_sight {
     const enf_shapes *shapes; ///< not owned
     int32_t *first;           ///< opening_count + 1 offsets into edges
     double (*edges)[6];       ///< Pluecker coordinates, (a x b, b - a) / |b - a| for an edge from a to b
+    bool *cell_is_convex;     ///< per cell
     double clearance;         ///< what a product must have for its sign to be sure
 } enf_sight;
 

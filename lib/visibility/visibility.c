@@ -154,8 +154,10 @@ static enf_status cast_bodies(ladder *ladder, enf_error *error) {
     enf_visibility *visibility = ladder->visibility;
     const bool by_facing = ladder->options->method == ENF_METHOD_FACING;
     enf_workplace *place = place_for(ladder, by_facing ? "facing" : "hourglass");
-    enf_body_cast cast = {
-        .shapes = &ladder->shapes, .bodies = ladder->options->bodies, .by_facing = by_facing};
+    enf_body_cast cast = {.shapes = &ladder->shapes,
+                          .bodies = ladder->options->bodies,
+                          .order = ladder->options->order,
+                          .by_facing = by_facing};
     enf_status status = enf_body_cast_run(&cast, place, error);
     visibility->met = cast.met;
     visibility->body_visits = cast.visits;

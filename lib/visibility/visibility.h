@@ -3,6 +3,7 @@
 #ifndef ENF_VISIBILITY_VISIBILITY_H
 #define ENF_VISIBILITY_VISIBILITY_H
 
+#include "visibility/air_order.h"
 #include "visibility/bits.h"
 #include "visibility/bodies.h"
 #include "visibility/line.h"
@@ -33,7 +34,8 @@ typedef struct enf_visibility_options {
     enf_method method;
     int threads; ///< at least 1; the result is the same for any number
     bool want_witnesses;
-    const enf_bodies *bodies; ///< may be null: bodies in the cells, which are asked for, too
+    const enf_bodies *bodies;   ///< may be null: bodies in the cells, which are asked for, too
+    const enf_air_order *order; ///< may be null: of the cells, if they are leafs; saves time with bodies
 
     /// May be null; false cancels. Called by the caller's own thread only.
     bool (*progress)(void *user, const char *stage, double fraction);

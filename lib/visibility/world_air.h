@@ -9,6 +9,7 @@
 #ifndef ENF_VISIBILITY_WORLD_AIR_H
 #define ENF_VISIBILITY_WORLD_AIR_H
 
+#include "visibility/air_order.h"
 #include "visibility/air_parts.h"
 #include "visibility/portal_graph.h"
 
@@ -19,11 +20,12 @@ typedef struct enf_world_air {
     enf_portal_graph portals;      ///< between the world's cells; empty if it is not used
     enf_portal_graph leafs;        ///< likewise
     enf_air_parts parts;           ///< of the world's cells, in the leafs
+    enf_air_order order;           ///< of the leafs of a partition
 } enf_world_air;
 
-/// Needs the exact part of the file for leafs. `only_partition`: fine cells are not taken for leafs. *air is
-/// overwritten; free it in any case.
-enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition,
+/// Needs the exact part of the file for leafs. `only_partition`: fine cells are not taken for leafs. The air
+/// is the same for any number of threads. *air is overwritten; free it in any case.
+enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition, int threads,
                               enf_error *error);
 void enf_world_air_free(enf_world_air *air);
 

@@ -57,7 +57,8 @@ static bool add_plane(enf_portal_graph *graph, const enf_file_view *view, const 
         if (!is_in_plane(view, &polygons[i], plane)) continue;
         taken[i] = true;
         enf_window_copy(&next, polygon_corners(view, &polygons[i]), polygons[i].vertex_count);
-        enf_hull_extend(&hull, &next, axes, 0);
+        const enf_outline other = enf_window_outline(&next);
+        enf_hull_extend(&hull, &other, axes, 0);
     }
     double corners[ENF_WINDOW_MOST][3];
     const enf_outline outline = enf_window_outline(&hull);

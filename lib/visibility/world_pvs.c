@@ -57,7 +57,8 @@ enf_status enf_world_pvs_add(enf_build_image *image, const enf_visibility_option
     enf_world_air air = {0};
     *visibility = (enf_visibility){0};
     bool is_large = left_out && image->view.portal_count / 2 > ENF_WORLD_PVS_OPENINGS;
-    enf_status status = is_large ? ENF_OK : enf_world_air_make(&air, &image->view, left_out != NULL, error);
+    enf_status status =
+        is_large ? ENF_OK : enf_world_air_make(&air, &image->view, left_out != NULL, options->threads, error);
     is_large = is_large || (left_out && !air.has_partition);
     if (left_out) *left_out = is_large;
     if (!status && !is_large) {

@@ -100,6 +100,7 @@ enf_status enf_world_visibility_run(enf_visibility *visibility, const enf_world_
     }
     own.checkpoint = options->checkpoint;
     own.bodies = &air->parts.bodies;
+    own.order = air->has_partition ? &air->order : NULL;
     if (!status) status = enf_visibility_run(visibility, &air->leafs, &own, error);
     if (!status) status = find_cells(visibility, air, view, error);
     if (!status && air->uses_portals) narrow(&visibility->pvs, &portals.pvs);
