@@ -10,6 +10,7 @@
 #include "cli/cli.h"
 #include "cli/job.h"
 #include "visibility/world_lines.h"
+#include "visibility/world_pairs.h"
 #include "visibility/world_pvs.h"
 #include "visibility/world_views.h"
 
@@ -24,6 +25,7 @@ typedef struct request {
     cli_settings settings;
     int method, runs;
     double lines; ///< at most so many
+    double pairs, check_seen;
 } request;
 
 typedef struct row {
@@ -46,6 +48,44 @@ static int64_t count_pairs(const enf_pvs *pvs) {
 
 /// When a round finds no more than this of what is seen, no more are thrown.
 static const double saturated = 2e-4;
+
+static enf_status dbg_pairs(const request *request, const enf_world_air *air, enf_world_lines *lines, const enf_pvs *claimed, enf_error *error) {
+    enf_world_pairs pairs;
+    enf_pvs seen0;
+    enf_status status = enf_world_pairs_make(&pairs, air, lines, 5, error);
+    int64_t steps_most = getenv("STEPS") ? atol(getenv("STEPS")) : 100000;
+    if (!status) status = enf_pvs_new(&seen0, claimed->cell_count, error);
+    memcpy(seen0.rows, lines->seen.rows, (size_t)seen0.cell_count*seen0.row_words*8);
+    int64_t U = 0, S = 0;
+    for (int32_t i = 0; i < claimed->cell_count; i++)
+        for (int32_t j = i + 1; j < claimed->cell_count; j++) if (enf_pvs_get(claimed, i, j)) { if (enf_pvs_get(&seen0, i, j)) S++; else U++; }
+    for (int want = 0; want < 2; want++) {
+        int64_t total = want ? S : U; int n = want ? (int)request->check_seen : (int)request->pairs; int counts[4] = {0}; double t0 = enf_timer_now();
+        uint64_t seed = 12345 + (uint64_t)want;
+        int64_t left = total; int need = n;
+        for (int32_t i = 0; i < claimed->cell_count && need > 0; i++)
+            for (int32_t j = i + 1; j < claimed->cell_count && need > 0; j++) {
+                if (!enf_pvs_get(claimed, i, j) || enf_pvs_get(&seen0, i, j) != want) continue;
+                seed = seed * 6364136223846793005ull + 1442695040888963407ull;
+                double u = (double)(seed >> 11) * 0x1p-53;
+                if (u * (double)left-- >= need) continue;
+                need--;
+                enf_squeeze_answer answer;
+                int64_t ways = pairs.ways; double t1 = enf_timer_now();
+                // forget
+                enf_pvs_row(&lines->seen, i)[j >> 6] &= ~(1ull << (j & 63));
+                enf_pvs_row(&lines->seen, j)[i >> 6] &= ~(1ull << (i & 63));
+                status = enf_world_pairs_decide(&pairs, i, j, steps_most, &answer, error);
+                if (status) return status;
+                counts[answer == ENF_SQUEEZE_OPEN && pairs.squeeze.is_tiny ? 3 : answer]++;
+                if (getenv("DBG")) fprintf(stderr, "%d %d: %d tiny %d ways %ld steps %ld parts %d %d, %.3fs\n", i, j, answer, pairs.squeeze.is_tiny, (long)(pairs.ways - ways), (long)(steps_most - pairs.squeeze.steps),
+                    air->parts.bodies.owner_first[i+1]-air->parts.bodies.owner_first[i], air->parts.bodies.owner_first[j+1]-air->parts.bodies.owner_first[j], enf_timer_now() - t1);
+            }
+        fprintf(stderr, "want %d: of %ld: hidden %d seen %d open %d tiny %d; %.1f s\n", want, (long)total, counts[0], counts[1], counts[2], counts[3], enf_timer_now() - t0);
+    }
+    enf_world_pairs_free(&pairs);
+    return status;
+}
 
 /// Throws lines at what has not been seen yet, round after round; most of them from views.
 static enf_status throw_lines(const request *request, const enf_file_view *view, const enf_pvs *claimed,
@@ -72,6 +112,7 @@ static enf_status throw_lines(const request *request, const enf_file_view *view,
         row->seen = count_pairs(&lines.seen);
         row->missed = count_missed(&lines.seen, claimed);
     }
+    if (!status && request->pairs > 0) status = dbg_pairs(request, &air, &lines, claimed, error);
     enf_world_lines_free(&lines);
     enf_world_air_free(&air);
     return status;
@@ -181,6 +222,8 @@ int cli_bench_worlds(int argc, char **argv) {
                              cli_pvs_choices + CLI_PVS_METHOD, false},
                             {"--lines", 0, CLI_LENGTH, &request.lines, "N",
                              "at most so many lines a world; default 1e7", NULL, false},
+                            {"--pairs", 0, CLI_LENGTH, &request.pairs, "N", "", NULL, false},
+                            {"--seen-pairs", 0, CLI_LENGTH, &request.check_seen, "N", "", NULL, false},
                             {"--runs", 0, CLI_COUNT, &request.runs, "N",
                              "medians over so many runs, at most 15; default 3", NULL, false},
                             CLI_LEVELS_OPTION(folder),

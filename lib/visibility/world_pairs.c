@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "visibility/world_pairs.h"
+
+#include "base/array.h"
+#include "visibility/facing.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { WAY_MOST = 200 };
+
+static bool follows(const void *user, int32_t portal, int32_t next) {
+    return enf_portals_face(user, portal, next);
+}
+
+enf_status enf_world_pairs_make(enf_world_pairs *pairs, const enf_world_air *air, enf_world_lines *lines,
+                                uint64_t seed, enf_error *error) {
+    *pairs = (enf_world_pairs){.air = air, .lines = lines, .squeeze = {.seed = seed}};
+    const size_t portals = 2 * (size_t)air->leafs.opening_count;
+    if (!enf_shapes_make(&pairs->shapes, &air->leafs) ||
+        !enf_follows_make(&pairs->follows, &air->leafs, follows, &pairs->shapes))
+        return enf_fail_memory(error, "the pairs");
+    pairs->squeeze.shapes = &pairs->shapes;
+    pairs->beams = enf_beams_new(&pairs->shapes, NULL, &pairs->follows);
+    pairs->met = enf_array_new(lines->seen.row_words, sizeof *pairs->met);
+    pairs->guides = enf_array_new(portals, sizeof *pairs->guides);
+    pairs->is_guided = enf_array_zeroed(portals, sizeof *pairs->is_guided);
+    pairs->marked = enf_array_new(portals, sizeof *pairs->marked);
+    pairs->is_on_way = enf_array_zeroed((size_t)air->leafs.cell_count, sizeof *pairs->is_on_way);
+    pairs->way = enf_array_new(WAY_MOST, sizeof *pairs->way);
+    pairs->windows = enf_array_new(WAY_MOST, sizeof *pairs->windows);
+    if (pairs->beams && pairs->met && pairs->guides && pairs->is_guided && pairs->marked &&
+        pairs->is_on_way && pairs->way && pairs->windows)
+        return ENF_OK;
+    return enf_fail_memory(error, "the pairs");
+}
+
+void enf_world_pairs_free(enf_world_pairs *pairs) {
+    enf_beams_free(pairs->beams);
+    enf_follows_free(&pairs->follows);
+    enf_shapes_free(&pairs->shapes);
+    free(pairs->met);
+    free(pairs->guides);
+    free(pairs->is_guided);
+    free(pairs->marked);
+    free(pairs->is_on_way);
+    free(pairs->way);
+    free(pairs->windows);
+    *pairs = (enf_world_pairs){0};
+}
+
+// ---------------------------------------------------------------------------------------------- one pair
+
+typedef struct deciding {
+    enf_world_pairs *pairs;
+    int32_t cell, other;
+    enf_body body; ///< the part of the cell that ways begin at
+    enf_solid from;
+    bool is_seen, is_open;
+} deciding;
+
+static bool try_line(void *user, const enf_line *line) {
+    const deciding *deciding = user;
+    enf_world_lines *lines = deciding->pairs->lines;
+    enf_world_lines_follow(lines, line, deciding->cell);
+    return enf_pvs_get(&lines->seen, deciding->cell, deciding->other);
+}
+
+/// What may be seen of each portal from the other cell, towards which the ways go.
+static void find_guides(enf_world_pairs *pairs, int32_t other) {
+    const int32_t *reached;
+    for (int32_t i = 0; i < pairs->marked_count; i++) pairs->is_guided[pairs->marked[i]] = false;
+    memset(pairs->met, 0, pairs->lines->seen.row_words * sizeof *pairs->met);
+    enf_beams_cast_owner(pairs->beams, &pairs->air->parts.bodies, other, pairs->met);
+    pairs->marked_count = enf_beams_reached(pairs->beams, &reached);
+    for (int32_t i = 0; i < pairs->marked_count; i++) {
+        const int32_t portal = reached[i] ^ 1;
+        enf_beams_window(pairs->beams, reached[i], &pairs->guides[portal]);
+        pairs->is_guided[portal] = true;
+        pairs->marked[i] = portal;
+    }
+}
+
+/// The other cell's part in a leaf; -1: it has none.
+static int32_t find_part(const enf_bodies *bodies, int32_t leaf, int32_t owner) {
+    for (int32_t body = bodies->cell_first[leaf]; body < bodies->cell_first[leaf + 1]; body++)
+        if (bodies->owner[body] == owner) return body;
+    return -1;
+}
+
+static void take_part(const enf_bodies *bodies, int32_t body, enf_solid *solid) {
+    const int32_t first = bodies->corner_first[body];
+    enf_solid_make(solid, (const double(*)[3])(bodies->corners + first),
+                   bodies->corner_first[body + 1] - first);
+}
+
+/// The way so far has come to a part of the other cell.
+static enf_status arrive(deciding *deciding, int32_t length, int32_t part, const enf_separators *separators,
+                         enf_error *error) {
+    enf_world_pairs *pairs = deciding->pairs;
+    enf_squeeze_answer answer;
+    enf_solid to;
+    take_part(&pairs->air->parts.bodies, part, &to);
+    if (separators && !enf_solid_cut_all(&to, separators)) return ENF_OK;
+    pairs->ways++;
+    enf_status status = enf_squeeze_run(&pairs->squeeze, &deciding->from, pairs->way, pairs->windows, length,
+                                        &to, &answer, error);
+    deciding->is_seen = deciding->is_seen || answer == ENF_SQUEEZE_SEEN;
+    deciding->is_open = deciding->is_open || answer == ENF_SQUEEZE_OPEN;
+    return status;
+}
+
+/// Does some of the part lie before the portal?
+static bool is_before(const deciding *deciding, int32_t portal) {
+    const enf_shapes *shapes = &deciding->pairs->shapes;
+    for (int32_t i = 0; i < deciding->from.count; i++)
+        if (enf_shape_height(shapes, portal, deciding->from.corners[i]) < -shapes->tolerance) return true;
+    return false;
+}
+
+/// Goes on from a leaf, `length` portals away from the first.
+// NOLINTNEXTLINE(misc-no-recursion): WAY_MOST leafs at most
+static enf_status go_on(deciding *deciding, int32_t leaf, int32_t length, enf_error *error) {
+    enf_world_pairs *pairs = deciding->pairs;
+    const enf_portal_graph *leafs = &pairs->air->leafs;
+    const int32_t via = length > 0 ? pairs->way[length - 1] : -1,
+                  part = find_part(&pairs->air->parts.bodies, leaf, deciding->other);
+    enf_separators separators;
+    enf_status status = ENF_OK;
+    if (pairs->squeeze.steps <= 0 || length == WAY_MOST) deciding->is_open = true;
+    if (pairs->squeeze.steps <= 0 || length == WAY_MOST || deciding->is_seen) return ENF_OK;
+    if (via >= 0) {
+        const enf_outline window = enf_window_outline(&pairs->windows[length - 1]);
+        pairs->squeeze.steps--;
+        enf_separators_from_body(&separators, &pairs->shapes, &deciding->body, &window, via);
+    }
+    if (part >= 0) status = arrive(deciding, length, part, via < 0 ? NULL : &separators, error);
+    pairs->is_on_way[leaf] = true;
+    for (int32_t k = leafs->cell_portal[leaf]; !status && k < leafs->cell_portal[leaf + 1]; k++) {
+        const int32_t next = leafs->cell_portals[k];
+        if (!pairs->is_guided[next] || pairs->is_on_way[enf_portal_to(leafs, next)] ||
+            !is_before(deciding, next))
+            continue;
+        enf_window *window = &pairs->windows[length];
+        const enf_outline guide = enf_window_outline(&pairs->guides[next]);
+        enf_window_take(window, &guide);
+        if (via >= 0 && !enf_squeeze_window(window, &separators)) continue;
+        pairs->way[length] = next;
+        status = go_on(deciding, enf_portal_to(leafs, next), length + 1, error);
+    }
+    pairs->is_on_way[leaf] = false;
+    return status;
+}
+
+enf_status enf_world_pairs_decide(enf_world_pairs *pairs, int32_t cell, int32_t other, int64_t steps,
+                                  enf_squeeze_answer *answer, enf_error *error) {
+    const enf_bodies *bodies = &pairs->air->parts.bodies;
+    deciding deciding = {.pairs = pairs, .cell = cell, .other = other};
+    enf_status status = ENF_OK;
+    pairs->squeeze.steps = steps;
+    pairs->squeeze.is_tiny = false;
+    pairs->squeeze.try_line = try_line;
+    pairs->squeeze.user = &deciding;
+    find_guides(pairs, other);
+    for (int32_t k = bodies->owner_first[cell]; !status && k < bodies->owner_first[cell + 1]; k++) {
+        const int32_t leaf = bodies->cells[k];
+        take_part(bodies, find_part(bodies, leaf, cell), &deciding.from);
+        enf_body_make(&deciding.body, (const double(*)[3])deciding.from.corners, deciding.from.count,
+                      pairs->shapes.tolerance / 8);
+        status = go_on(&deciding, leaf, 0, error);
+    }
+    *answer = deciding.is_seen   ? ENF_SQUEEZE_SEEN
+              : deciding.is_open ? ENF_SQUEEZE_OPEN
+                                 : ENF_SQUEEZE_HIDDEN;
+    return status;
+}
