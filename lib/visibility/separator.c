@@ -15,11 +15,6 @@ static const double band_tolerances = 0x1p14;
 /// nearer than they look by `contact_error`, as corners within the band count for all that is near them.
 static const double near = 0x1p-12, contact_error = 0x1p-30;
 
-/// Of the size of the world: bodies that touch a window are taken to be this far from it. Sight is lost by it
-/// only if it takes off less than that of a body, in a corner that touches the window, and rounding is
-/// against it; what a partition of the air makes of the world is not better than that.
-static const double body_gap = 0x1p-20;
-
 /// Two windows and the way between them.
 typedef struct passage {
     const enf_shapes *shapes;
@@ -267,10 +262,20 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
     enf_separators_between(separators, shapes, &one, from_portal, &two, to_portal);
 }
 
+// Between a body and a window it is different: what planes must leave over there is a line of each bundle,
+// not each line. Take a sight line with all lines near it, as far as some radius, and move it down towards
+// the plane by a tolerance: that line passes the window, too, so that the sight line passes it at least a
+// tolerance above the plane. It was below or at the plane before, and so it rises, and stays that high for
+// good. No error of a corner is made larger by it, however near to the body the window is. All lines around
+// the sight line within a radius that is a little smaller (by three tolerances) do the same. So what planes
+// have to leave begins a tolerance above them. After n windows those sights are there still that had 3n
+// tolerances of room around them; those that only touch a plane, as along a wall or the edge of a step, are
+// gone. Both sides of a plane are measured, corner by corner: how it was found does not matter.
+
 /// Four edges of a body, and the two planes through each that touch the window, by their normals of any
 /// length.
 typedef struct body_edges {
-    enf_four a[3], left[3], right[3];
+    enf_four a[3], along[3], left[3], right[3];
     enf_four normals[2][3];
 } body_edges;
 
@@ -284,16 +289,16 @@ ENF_PART_OF_WIDE void turn_on(enf_four normal[3], const enf_four way[3], const e
 ENF_PART_OF_WIDE void turn_body_edges(const passage *passage, const enf_body *body, int32_t first,
                                       body_edges *edges) {
     const enf_outline *window = passage->one;
-    enf_four edge[3], way[3], next[3], opposite[3];
+    enf_four way[3], next[3], opposite[3];
     for (int axis = 0; axis < 3; axis++) {
         edges->a[axis] = enf_four_load(body->from[axis] + first);
-        edge[axis] = enf_four_load(body->along[axis] + first);
+        edges->along[axis] = enf_four_load(body->along[axis] + first);
         edges->left[axis] = enf_four_load(body->left[axis] + first);
         edges->right[axis] = enf_four_load(body->right[axis] + first);
     }
     for (int32_t i = 0; i < window->count; i++) {
         for (int axis = 0; axis < 3; axis++) way[axis] = window->at[axis][i] - edges->a[axis];
-        cross_four(edge, way, next);
+        cross_four(edges->along, way, next);
         for (int axis = 0; axis < 3; axis++) {
             opposite[axis] = -next[axis];
             if (i > 0) continue;
@@ -312,17 +317,27 @@ ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passag
                                         enf_four_mask good) {
     good &= (dot_four(normal, edges->left) <= 0) & (dot_four(normal, edges->right) <= 0);
     if (!enf_four_bits(good)) return;
-    const double swing = find_swing(passage, passage->gap), tolerance = passage->shapes->tolerance;
+    const double tolerance = passage->shapes->tolerance;
     const enf_four square = dot_four(normal, normal), inverse = inverse_root(square);
-    enf_four unit[3];
+    enf_four unit[3], second;
     for (int axis = 0; axis < 3; axis++) unit[axis] = normal[axis] * inverse;
-    enf_four second;
-    const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit, &second),
-                   tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse,
-                   slack = tolerance * (tilt + swing);
+    const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit, &second);
     good &= (square > 0) & (inverse < HUGE_VAL) & (behind <= front + tolerance) &
-            (slack <= passage->shapes->extent);
-    add_good(separators, unit, front - slack, good);
+            (enf_four_abs(dot_four(unit, edges->along)) <= tolerance);
+    add_good(separators, unit, front + tolerance, good);
+}
+
+/// The planes through edges of the window, which are turned so as to have the body behind them. `one` of the
+/// passage is the window, `other` the body.
+ENF_PART_OF_WIDE void add_window_planes(enf_separators *separators, const passage *passage) {
+    const enf_outline *window = passage->one;
+    for (int32_t first = 0; first < window->count; first += ENF_FOUR) {
+        if (separators->count > ENF_SEPARATORS_MOST - ENF_FOUR) return;
+        tangents tangents = find_tangents(passage, first);
+        for (int axis = 0; axis < 3; axis++) tangents.normal[axis] = -tangents.normal[axis];
+        add_good(separators, tangents.normal, passage->shapes->tolerance - tangents.behind,
+                 tangents.good & are_edges(window, first));
+    }
 }
 
 /// The planes through edges of the body. `one` of the passage is the window, `other` the body.
@@ -340,22 +355,9 @@ ENF_PART_OF_WIDE void add_body_planes(enf_separators *separators, const passage 
 
 ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes,
                                            const enf_body *body, const enf_outline *to, int32_t to_portal) {
-    const enf_shape *shape = &shapes->shapes[to_portal >> 1];
-    double apart[3], span = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        const double way = fabs(shape->middle[axis] - body->middle[axis]),
-                     halves = shape->half[axis] + body->half[axis];
-        apart[axis] = way > halves ? way - halves : 0;
-        span += way + halves;
-    }
-    const passage passage = {.shapes = shapes,
-                             .one = to,
-                             .other = &body->corners,
-                             .turns = to_portal & 1,
-                             .gap = fmax(sqrt(enf_dot(apart, apart)), shapes->extent * body_gap),
-                             .span = span};
+    const passage passage = {.shapes = shapes, .one = to, .other = &body->corners, .turns = to_portal & 1};
     separators->count = 0;
-    add_far_planes(separators, &passage);
+    add_window_planes(separators, &passage);
     add_body_planes(separators, &passage, body);
     enf_separators_close(separators);
 }
