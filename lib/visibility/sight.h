@@ -11,8 +11,8 @@ typedef struct enf_sight {
     int32_t *first;           ///< opening_count + 1 offsets into edges
     double (*edges)[6];       ///< Pluecker coordinates, (a x b, b - a) / |b - a| for an edge from a to b
     double clearance;         ///< what a product must have for its sign to be sure
-    bool trusts_order;        ///< set it if no cell bends by more than rounding does: lines come to the portals
-                              ///< of such in order, though flat ones have no room to show it
+    bool trusts_order; ///< set it if no cell bends by more than rounding does: lines come to the portals
+                       ///< of such in order, though flat ones have no room to show it
 } enf_sight;
 
 /// False without memory; free it in any case.

@@ -42,8 +42,8 @@ static int32_t find_face(const enf_solid *solid, const enf_cut *cut, const doubl
             if (heights[k] >= 0) continue;
             const double share = heights[i] / (heights[i] - heights[k]);
             for (int axis = 0; axis < 3; axis++)
-                points[count][axis] = solid->corners[i][axis] +
-                                      share * (solid->corners[k][axis] - solid->corners[i][axis]);
+                points[count][axis] =
+                    solid->corners[i][axis] + share * (solid->corners[k][axis] - solid->corners[i][axis]);
             count++;
         }
     const int32_t made = enf_flat_hull(points, count, cut->normal, hull);

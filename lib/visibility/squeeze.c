@@ -118,8 +118,8 @@ static void mix_corners(enf_squeeze *squeeze, const enf_solid *solid, double poi
 }
 
 /// Looks from one end to the other, and from the middle of what is seen back: the line between the middles of
-/// both is the better for it.
-static bool find_line(enf_squeeze *squeeze, const row *row) {
+/// both is the better for it. HIDDEN: no line.
+static enf_squeeze_answer find_line(enf_squeeze *squeeze, const row *row) {
     for (int k = 0; k < TRIES; k++) {
         const int end = k & 1;
         enf_solid there, back;
@@ -131,12 +131,13 @@ static bool find_line(enf_squeeze *squeeze, const row *row) {
             mix_corners(squeeze, &row->ends[end], points[end]);
         if (!look(row, points[end], end, &there)) continue;
         enf_solid_middle(&there, points[!end]);
-        if (squeeze->try_line(squeeze->user, &line)) return true;
+        if (squeeze->try_line(squeeze->user, &line)) return ENF_SQUEEZE_SEEN;
         if (!look(row, points[!end], !end, &back)) continue;
         enf_solid_middle(&back, points[end]);
-        if (squeeze->try_line(squeeze->user, &line)) return true;
+        if (squeeze->try_line(squeeze->user, &line)) return ENF_SQUEEZE_SEEN;
+        if (squeeze->is_rough) return ENF_SQUEEZE_OPEN;
     }
-    return false;
+    return ENF_SQUEEZE_HIDDEN;
 }
 
 // ---------------------------------------------------------------------------------------------- halving
@@ -183,7 +184,7 @@ static enf_status halve(enf_squeeze *squeeze, row *row, int depth, enf_squeeze_a
         free(half);
         if (status || *answer == ENF_SQUEEZE_SEEN) return status;
         is_open = is_open || *answer == ENF_SQUEEZE_OPEN;
-        if (is_open) break; // more does not tell more
+        if (is_open && squeeze->is_rough) return ENF_OK;
     }
     *answer = is_open ? ENF_SQUEEZE_OPEN : ENF_SQUEEZE_HIDDEN;
     return ENF_OK;
@@ -203,10 +204,8 @@ static enf_status settle(enf_squeeze *squeeze, row *row, int depth, enf_squeeze_
             goes_on = goes_on || enf_solid_extent(&row->ends[end], &axis, &middle) < worth * before[end];
         if (!goes_on) break;
     }
-    if (find_line(squeeze, row)) {
-        *answer = ENF_SQUEEZE_SEEN;
-        return ENF_OK;
-    }
+    *answer = find_line(squeeze, row);
+    if (*answer != ENF_SQUEEZE_HIDDEN) return ENF_OK;
     return halve(squeeze, row, depth, answer, error);
 }
 

@@ -14,7 +14,7 @@
 typedef enum enf_squeeze_answer {
     ENF_SQUEEZE_HIDDEN, ///< no line, but within the tolerances of separators
     ENF_SQUEEZE_SEEN,
-    ENF_SQUEEZE_OPEN ///< out of steps, or what is left is too small to tell
+    ENF_SQUEEZE_OPEN ///< out of steps, or what is left is too small to tell, or that line of rough solids
 } enf_squeeze_answer;
 
 typedef struct enf_squeeze {
@@ -24,7 +24,9 @@ typedef struct enf_squeeze {
     void *user;
     uint64_t seed; ///< of random points; goes on from call to call
     int64_t steps; ///< separators that may still be made; counts down
-    bool is_tiny;  ///< an answer OPEN because of what is too small
+    bool
+        is_rough; ///< the solids are larger than what is looked for: the first line that is not it is the end
+    bool is_tiny; ///< set with an answer OPEN: what is left is too small
 } enf_squeeze;
 
 /// The windows are of directed portals, `count` of them, which may be none. ENF_NO_RESOURCES without memory.

@@ -2,8 +2,10 @@
 #include "visibility/world_pairs.h"
 
 #include "base/array.h"
+#include "format/frame.h"
 #include "visibility/facing.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +18,7 @@ static bool follows(const void *user, int32_t portal, int32_t next) {
 enf_status enf_world_pairs_make(enf_world_pairs *pairs, const enf_world_air *air, enf_world_lines *lines,
                                 uint64_t seed, enf_error *error) {
     *pairs = (enf_world_pairs){.air = air, .lines = lines, .squeeze = {.seed = seed}};
+    pairs->pieces[0].cell = pairs->pieces[1].cell = -1;
     const size_t portals = 2 * (size_t)air->leafs.opening_count;
     if (!enf_shapes_make(&pairs->shapes, &air->leafs) ||
         !enf_follows_make(&pairs->follows, &air->leafs, follows, &pairs->shapes))
@@ -46,6 +49,9 @@ void enf_world_pairs_free(enf_world_pairs *pairs) {
     free(pairs->is_on_way);
     free(pairs->way);
     free(pairs->windows);
+    for (int i = 0; i < 2; i++) free(pairs->pieces[i].items);
+    free(pairs->vertices.vertices);
+    free(pairs->corners);
     *pairs = (enf_world_pairs){0};
 }
 
@@ -54,6 +60,7 @@ void enf_world_pairs_free(enf_world_pairs *pairs) {
 typedef struct deciding {
     enf_world_pairs *pairs;
     int32_t cell, other;
+    int32_t leaf;  ///< that ways begin in
     enf_body body; ///< the part of the cell that ways begin at
     enf_solid from;
     bool is_seen, is_open;
@@ -94,20 +101,124 @@ static void take_part(const enf_bodies *bodies, int32_t body, enf_solid *solid) 
                    bodies->corner_first[body + 1] - first);
 }
 
+// ---------------------------------------------------------------------------------------------- pieces
+
+/// The hull of a leaf, which its bodies tile.
+static bool find_leaf(enf_world_pairs *pairs, int32_t leaf, enf_body *hull) {
+    const enf_bodies *bodies = &pairs->air->parts.bodies;
+    int32_t count = 0;
+    for (int32_t body = bodies->cell_first[leaf]; body < bodies->cell_first[leaf + 1]; body++)
+        for (int32_t i = bodies->corner_first[body]; i < bodies->corner_first[body + 1]; i++) {
+            if (!enf_array_reserve(pairs->corners, pairs->corner_capacity, count + 1)) return false;
+            memcpy(pairs->corners[count++], bodies->corners[i], sizeof *pairs->corners);
+        }
+    enf_body_make(hull, (const double(*)[3])pairs->corners, count, pairs->shapes.tolerance / 8);
+    return true;
+}
+
+/// Cuts a solid to what lies in the inside of a hull. False if that is nothing.
+static bool cut_to(enf_solid *solid, const enf_body *hull, double tolerance) {
+    for (int32_t i = 0; i < hull->edge_count; i++)
+        for (int side = 0; side < 2; side++) {
+            const double(*into)[ENF_BODY_EDGES] = side ? hull->left : hull->right;
+            enf_cut cut = {.least = tolerance};
+            for (int axis = 0; axis < 3; axis++) {
+                const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+                cut.normal[axis] = hull->along[u][i] * into[v][i] - hull->along[v][i] * into[u][i];
+            }
+            const double length = sqrt(enf_dot(cut.normal, cut.normal)) * (side ? -1 : 1);
+            for (int axis = 0; axis < 3; axis++) {
+                cut.normal[axis] /= length;
+                cut.least += cut.normal[axis] * hull->from[axis][i];
+            }
+            if (!enf_solid_cut(solid, &cut)) return false;
+        }
+    return true;
+}
+
+static bool add_piece(enf_world_pieces *pieces, int32_t leaf, const enf_solid *solid) {
+    if (!enf_array_reserve(pieces->items, pieces->capacity, pieces->count + 1)) return false;
+    pieces->items[pieces->count++] = (enf_world_piece){leaf, *solid};
+    return true;
+}
+
+static bool take_fine_cell(enf_world_pairs *pairs, int32_t fine, enf_solid *solid) {
+    const enf_file_view *view = pairs->lines->view;
+    if (!enf_fine_vertices_take(&pairs->vertices, view, fine) ||
+        !enf_array_reserve(pairs->corners, pairs->corner_capacity, pairs->vertices.count))
+        return false;
+    for (int32_t i = 0; i < pairs->vertices.count; i++)
+        enf_view_to_world(view, view->vertex_position[pairs->vertices.vertices[i]], pairs->corners[i]);
+    enf_solid_make(solid, (const double(*)[3])pairs->corners, pairs->vertices.count);
+    return true;
+}
+
+/// What the fine cells of a cell leave in a leaf.
+static bool add_pieces(enf_world_pairs *pairs, enf_world_pieces *pieces, int32_t leaf) {
+    enf_body hull;
+    bool good = find_leaf(pairs, leaf, &hull);
+    for (int32_t fine = 0; good && fine < pairs->lines->view->fine_count; fine++) {
+        enf_solid solid;
+        if (pairs->lines->view->fine_cell[fine] != pieces->cell) continue;
+        good = take_fine_cell(pairs, fine, &solid);
+        if (good && cut_to(&solid, &hull, pairs->shapes.tolerance)) good = add_piece(pieces, leaf, &solid);
+    }
+    return good;
+}
+
+static bool make_pieces(enf_world_pairs *pairs, enf_world_pieces *pieces, int32_t cell) {
+    const enf_bodies *bodies = &pairs->air->parts.bodies;
+    bool good = true;
+    if (pieces->cell == cell) return true;
+    pieces->cell = cell;
+    pieces->count = 0;
+    for (int32_t k = bodies->owner_first[cell]; good && k < bodies->owner_first[cell + 1]; k++)
+        good = add_pieces(pairs, pieces, bodies->cells[k]);
+    return good;
+}
+
+// ---------------------------------------------------------------------------------------------- ways
+
+static enf_status squeeze(deciding *deciding, int32_t length, const enf_solid *from, const enf_solid *to,
+                          enf_squeeze_answer *answer, enf_error *error) {
+    enf_world_pairs *pairs = deciding->pairs;
+    pairs->ways++;
+    return enf_squeeze_run(&pairs->squeeze, from, pairs->way, pairs->windows, length, to, answer, error);
+}
+
+/// Whose parts see each other, may not do so.
+static enf_status look_closely(deciding *deciding, int32_t first, int32_t length, int32_t last,
+                               enf_error *error) {
+    enf_world_pairs *pairs = deciding->pairs;
+    enf_world_pieces *from = &pairs->pieces[0], *to = &pairs->pieces[1];
+    enf_status status = ENF_OK;
+    if (!make_pieces(pairs, from, deciding->cell) || !make_pieces(pairs, to, deciding->other))
+        return enf_fail_memory(error, "the pieces");
+    for (int32_t i = 0; i < from->count; i++)
+        for (int32_t k = 0; from->items[i].leaf == first && k < to->count; k++) {
+            enf_squeeze_answer answer;
+            if (to->items[k].leaf != last || status || deciding->is_seen) continue;
+            status = squeeze(deciding, length, &from->items[i].solid, &to->items[k].solid, &answer, error);
+            deciding->is_seen = deciding->is_seen || answer == ENF_SQUEEZE_SEEN;
+            deciding->is_open = deciding->is_open || answer == ENF_SQUEEZE_OPEN;
+        }
+    return status;
+}
+
 /// The way so far has come to a part of the other cell.
-static enf_status arrive(deciding *deciding, int32_t length, int32_t part, const enf_separators *separators,
-                         enf_error *error) {
+static enf_status arrive(deciding *deciding, int32_t leaf, int32_t length, int32_t part,
+                         const enf_separators *separators, enf_error *error) {
     enf_world_pairs *pairs = deciding->pairs;
     enf_squeeze_answer answer;
     enf_solid to;
     take_part(&pairs->air->parts.bodies, part, &to);
     if (separators && !enf_solid_cut_all(&to, separators)) return ENF_OK;
-    pairs->ways++;
-    enf_status status = enf_squeeze_run(&pairs->squeeze, &deciding->from, pairs->way, pairs->windows, length,
-                                        &to, &answer, error);
+    pairs->squeeze.is_rough = true;
+    enf_status status = squeeze(deciding, length, &deciding->from, &to, &answer, error);
+    pairs->squeeze.is_rough = false;
     deciding->is_seen = deciding->is_seen || answer == ENF_SQUEEZE_SEEN;
-    deciding->is_open = deciding->is_open || answer == ENF_SQUEEZE_OPEN;
-    return status;
+    if (status || answer != ENF_SQUEEZE_OPEN) return status;
+    return look_closely(deciding, deciding->leaf, length, leaf, error);
 }
 
 /// Does some of the part lie before the portal?
@@ -134,7 +245,7 @@ static enf_status go_on(deciding *deciding, int32_t leaf, int32_t length, enf_er
         pairs->squeeze.steps--;
         enf_separators_from_body(&separators, &pairs->shapes, &deciding->body, &window, via);
     }
-    if (part >= 0) status = arrive(deciding, length, part, via < 0 ? NULL : &separators, error);
+    if (part >= 0) status = arrive(deciding, leaf, length, part, via < 0 ? NULL : &separators, error);
     pairs->is_on_way[leaf] = true;
     for (int32_t k = leafs->cell_portal[leaf]; !status && k < leafs->cell_portal[leaf + 1]; k++) {
         const int32_t next = leafs->cell_portals[k];
@@ -163,14 +274,15 @@ enf_status enf_world_pairs_decide(enf_world_pairs *pairs, int32_t cell, int32_t 
     pairs->squeeze.user = &deciding;
     find_guides(pairs, other);
     for (int32_t k = bodies->owner_first[cell]; !status && k < bodies->owner_first[cell + 1]; k++) {
-        const int32_t leaf = bodies->cells[k];
+        const int32_t leaf = deciding.leaf = bodies->cells[k];
         take_part(bodies, find_part(bodies, leaf, cell), &deciding.from);
         enf_body_make(&deciding.body, (const double(*)[3])deciding.from.corners, deciding.from.count,
                       pairs->shapes.tolerance / 8);
         status = go_on(&deciding, leaf, 0, error);
     }
-    *answer = deciding.is_seen   ? ENF_SQUEEZE_SEEN
-              : deciding.is_open ? ENF_SQUEEZE_OPEN
-                                 : ENF_SQUEEZE_HIDDEN;
+    if (bodies->owner_first[cell] == bodies->owner_first[cell + 1] ||
+        bodies->owner_first[other] == bodies->owner_first[other + 1])
+        deciding.is_open = true; // too thin for leafs
+    *answer = deciding.is_seen ? ENF_SQUEEZE_SEEN : deciding.is_open ? ENF_SQUEEZE_OPEN : ENF_SQUEEZE_HIDDEN;
     return status;
 }

@@ -1,13 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The truth about pairs of cells of a compiled world, one by one: all ways through the leafs of the air from
-// one to the other are tried, each by itself, and squeezed (squeeze.h) until a line is found or none is left.
+// one to the other are tried, each by itself, and squeezed (squeeze.h) until a line is found or none is left:
+// between the hulls of their parts, and, where these see each other, between what fine cells leave in leafs.
 #ifndef ENF_VISIBILITY_WORLD_PAIRS_H
 #define ENF_VISIBILITY_WORLD_PAIRS_H
 
 #include "visibility/beams.h"
+#include "visibility/fine_vertices.h"
 #include "visibility/squeeze.h"
 #include "visibility/world_air.h"
 #include "visibility/world_lines.h"
+
+/// What of a fine cell lies in a leaf.
+typedef struct enf_world_piece {
+    int32_t leaf;
+    enf_solid solid;
+} enf_world_piece;
+
+typedef struct enf_world_pieces {
+    int32_t cell; ///< -1: none
+    enf_world_piece *items;
+    int32_t count;
+    size_t capacity;
+} enf_world_pieces;
 
 typedef struct enf_world_pairs {
     const enf_world_air *air; ///< not owned
@@ -15,14 +30,18 @@ typedef struct enf_world_pairs {
     enf_shapes shapes;        ///< of the leafs' openings
     enf_follows follows;
     enf_beams *beams;
-    uint64_t *met;       ///< scratch
-    enf_window *guides;  ///< per portal: what may be seen of it from the end of the way
-    bool *is_guided;     ///< per portal: something may
-    int32_t *marked;     ///< the portals that are guided
+    uint64_t *met;      ///< scratch
+    enf_window *guides; ///< per portal: what may be seen of it from the end of the way
+    bool *is_guided;    ///< per portal: something may
+    int32_t *marked;    ///< the portals that are guided
     int32_t marked_count;
-    bool *is_on_way;     ///< per leaf
-    int32_t *way;        ///< portals from the start
-    enf_window *windows; ///< what is left of each
+    bool *is_on_way;            ///< per leaf
+    int32_t *way;               ///< portals from the start
+    enf_window *windows;        ///< what is left of each
+    enf_world_pieces pieces[2]; ///< of the two cells; made when they are needed
+    enf_fine_vertices vertices; ///< scratch
+    double (*corners)[3];       ///< scratch
+    size_t corner_capacity;
     enf_squeeze squeeze;
     int64_t ways; ///< that were squeezed so far
 } enf_world_pairs;
