@@ -171,11 +171,6 @@ static enf_outline outline_of(const enf_beams *beams, int32_t portal) {
     return (enf_outline){beam->count, {kept->at[0], kept->at[1], kept->at[2]}};
 }
 
-int32_t enf_beams_reached(const enf_beams *beams, const int32_t **portals) {
-    *portals = beams->reached;
-    return beams->reached_count;
-}
-
 void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window) {
     const enf_outline outline = outline_of(beams, portal);
     enf_window_take(window, &outline);

@@ -36,9 +36,6 @@ void enf_beams_cast_owner(enf_beams *beams, const enf_bodies *bodies, int32_t ow
 /// The same without beams: through all portals that have some of the owner's bodies behind them.
 void enf_beams_face_owner(enf_beams *beams, const enf_bodies *bodies, int32_t owner, uint64_t *met);
 
-/// The portals that the last cast reached, as enf_beams_cast gives them.
-int32_t enf_beams_reached(const enf_beams *beams, const int32_t **portals);
-
 /// What they reach of one of these portals.
 void enf_beams_window(const enf_beams *beams, int32_t portal, enf_window *window);
 

@@ -3,7 +3,6 @@
 
 #include "base/array.h"
 #include "format/frame.h"
-#include "visibility/facing.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,39 +10,24 @@
 
 enum { WAY_MOST = 200 };
 
-static bool follows(const void *user, int32_t portal, int32_t next) {
-    return enf_portals_face(user, portal, next);
-}
-
 enf_status enf_world_pairs_make(enf_world_pairs *pairs, const enf_world_air *air, enf_world_lines *lines,
                                 uint64_t seed, enf_error *error) {
     *pairs = (enf_world_pairs){.air = air, .lines = lines, .squeeze = {.seed = seed}};
     pairs->pieces[0].cell = pairs->pieces[1].cell = -1;
     const size_t portals = 2 * (size_t)air->leafs.opening_count;
-    if (!enf_shapes_make(&pairs->shapes, &air->leafs) ||
-        !enf_follows_make(&pairs->follows, &air->leafs, follows, &pairs->shapes))
-        return enf_fail_memory(error, "the pairs");
+    if (!enf_shapes_make(&pairs->shapes, &air->leafs)) return enf_fail_memory(error, "the pairs");
     pairs->squeeze.shapes = &pairs->shapes;
-    pairs->beams = enf_beams_new(&pairs->shapes, NULL, &pairs->follows);
-    pairs->met = enf_array_new(lines->seen.row_words, sizeof *pairs->met);
-    pairs->guides = enf_array_new(portals, sizeof *pairs->guides);
     pairs->is_guided = enf_array_zeroed(portals, sizeof *pairs->is_guided);
     pairs->marked = enf_array_new(portals, sizeof *pairs->marked);
     pairs->is_on_way = enf_array_zeroed((size_t)air->leafs.cell_count, sizeof *pairs->is_on_way);
     pairs->way = enf_array_new(WAY_MOST, sizeof *pairs->way);
     pairs->windows = enf_array_new(WAY_MOST, sizeof *pairs->windows);
-    if (pairs->beams && pairs->met && pairs->guides && pairs->is_guided && pairs->marked &&
-        pairs->is_on_way && pairs->way && pairs->windows)
-        return ENF_OK;
+    if (pairs->is_guided && pairs->marked && pairs->is_on_way && pairs->way && pairs->windows) return ENF_OK;
     return enf_fail_memory(error, "the pairs");
 }
 
 void enf_world_pairs_free(enf_world_pairs *pairs) {
-    enf_beams_free(pairs->beams);
-    enf_follows_free(&pairs->follows);
     enf_shapes_free(&pairs->shapes);
-    free(pairs->met);
-    free(pairs->guides);
     free(pairs->is_guided);
     free(pairs->marked);
     free(pairs->is_on_way);
@@ -73,18 +57,39 @@ static bool try_line(void *user, const enf_line *line) {
     return enf_pvs_get(&lines->seen, deciding->cell, deciding->other);
 }
 
-/// What may be seen of each portal from the other cell, towards which the ways go.
+static void mark(enf_world_pairs *pairs, int32_t portal) {
+    if (pairs->is_guided[portal ^ 1]) return;
+    pairs->is_guided[portal ^ 1] = true;
+    pairs->marked[pairs->marked_count++] = portal;
+}
+
+/// Which portals may be seen from the other cell, towards which the ways go? From each to those behind it
+/// that separators leave something of.
 static void find_guides(enf_world_pairs *pairs, int32_t other) {
-    const int32_t *reached;
-    for (int32_t i = 0; i < pairs->marked_count; i++) pairs->is_guided[pairs->marked[i]] = false;
-    memset(pairs->met, 0, pairs->lines->seen.row_words * sizeof *pairs->met);
-    enf_beams_cast_owner(pairs->beams, &pairs->air->parts.bodies, other, pairs->met);
-    pairs->marked_count = enf_beams_reached(pairs->beams, &reached);
+    const enf_bodies *bodies = &pairs->air->parts.bodies;
+    const enf_portal_graph *leafs = &pairs->air->leafs;
+    const int32_t whole = bodies->whole_first[other];
+    enf_body body;
+    for (int32_t i = 0; i < pairs->marked_count; i++) pairs->is_guided[pairs->marked[i] ^ 1] = false;
+    pairs->marked_count = 0;
+    enf_body_make(&body, (const double(*)[3])(bodies->wholes + whole), bodies->whole_first[other + 1] - whole,
+                  pairs->shapes.tolerance / 8);
+    for (int32_t k = bodies->owner_first[other]; k < bodies->owner_first[other + 1]; k++)
+        for (int32_t i = leafs->cell_portal[bodies->cells[k]]; i < leafs->cell_portal[bodies->cells[k] + 1];
+             i++)
+            mark(pairs, leafs->cell_portals[i]);
     for (int32_t i = 0; i < pairs->marked_count; i++) {
-        const int32_t portal = reached[i] ^ 1;
-        enf_beams_window(pairs->beams, reached[i], &pairs->guides[portal]);
-        pairs->is_guided[portal] = true;
-        pairs->marked[i] = portal;
+        const int32_t via = pairs->marked[i], leaf = enf_portal_to(leafs, via);
+        const enf_outline outline = enf_shape_outline(&pairs->shapes, via >> 1);
+        enf_separators separators;
+        enf_window left;
+        enf_separators_from_body(&separators, &pairs->shapes, &body, &outline, via);
+        for (int32_t k = leafs->cell_portal[leaf]; k < leafs->cell_portal[leaf + 1]; k++) {
+            const int32_t next = leafs->cell_portals[k];
+            if (pairs->is_guided[next ^ 1] || next == (via ^ 1)) continue;
+            if (enf_separators_cut(&separators, &pairs->shapes, next, &left) != ENF_REMAINS_NOTHING)
+                mark(pairs, next);
+        }
     }
 }
 
@@ -253,8 +258,7 @@ static enf_status go_on(deciding *deciding, int32_t leaf, int32_t length, enf_er
             !is_before(deciding, next))
             continue;
         enf_window *window = &pairs->windows[length];
-        const enf_outline guide = enf_window_outline(&pairs->guides[next]);
-        enf_window_take(window, &guide);
+        enf_shape_window(&pairs->shapes, next, window);
         if (via >= 0 && !enf_squeeze_window(window, &separators)) continue;
         pairs->way[length] = next;
         status = go_on(deciding, enf_portal_to(leafs, next), length + 1, error);

@@ -5,7 +5,6 @@
 #ifndef ENF_VISIBILITY_WORLD_PAIRS_H
 #define ENF_VISIBILITY_WORLD_PAIRS_H
 
-#include "visibility/beams.h"
 #include "visibility/fine_vertices.h"
 #include "visibility/squeeze.h"
 #include "visibility/world_air.h"
@@ -28,12 +27,8 @@ typedef struct enf_world_pairs {
     const enf_world_air *air; ///< not owned
     enf_world_lines *lines;   ///< not owned: a pair is seen if these show it
     enf_shapes shapes;        ///< of the leafs' openings
-    enf_follows follows;
-    enf_beams *beams;
-    uint64_t *met;      ///< scratch
-    enf_window *guides; ///< per portal: what may be seen of it from the end of the way
-    bool *is_guided;    ///< per portal: something may
-    int32_t *marked;    ///< the portals that are guided
+    bool *is_guided;          ///< per portal: it may be seen, backwards, from the end of the way
+    int32_t *marked;          ///< the twins of those
     int32_t marked_count;
     bool *is_on_way;            ///< per leaf
     int32_t *way;               ///< portals from the start
