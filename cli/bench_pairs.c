@@ -22,34 +22,46 @@ static int64_t count_unseen(const enf_world_lines *lines, const enf_pvs *claimed
     return count;
 }
 
-static void note(cli_pair_sample *sample, enf_squeeze_answer answer) {
-    sample->decided++;
-    sample->seen += answer == ENF_SQUEEZE_SEEN;
-    sample->hidden += answer == ENF_SQUEEZE_HIDDEN;
-    sample->open += answer == ENF_SQUEEZE_OPEN;
-}
+/// A pair, and what is known of it.
+typedef struct decision {
+    int32_t pair[2];
+    enf_squeeze_answer answer;
+} decision;
 
 /// Takes `count` of the unseen pairs, in order.
 static void draw(const enf_world_lines *lines, const enf_pvs *claimed, int64_t unseen, int32_t count,
-                 int32_t (*pairs)[2]) {
+                 decision *decisions) {
     uint64_t state = 1;
     int32_t drawn = 0;
     for (int32_t i = 0; i < claimed->cell_count; i++)
         for (int32_t j = i + 1; j < claimed->cell_count && drawn < count; j++) {
             if (!is_unseen(lines, claimed, i, j)) continue;
             if (cli_random_share(&state) * (double)unseen-- >= count - drawn) continue;
-            pairs[drawn][0] = i;
-            pairs[drawn++][1] = j;
+            decisions[drawn++] = (decision){.pair = {i, j}, .answer = ENF_SQUEEZE_OPEN};
         }
 }
 
-static enf_status decide(enf_world_pairs *decider, const int32_t pair[2], cli_pair_sample *sample,
+/// What was open may have been on the way of a line for another pair since.
+static void sum_up(const enf_world_lines *lines, const decision *decisions, cli_pair_sample *sample) {
+    for (int32_t k = 0; k < sample->decided; k++) {
+        const decision *one = &decisions[k];
+        const bool is_seen = enf_pvs_get(&lines->seen, one->pair[0], one->pair[1]);
+        sample->seen += is_seen;
+        sample->hidden += !is_seen && one->answer == ENF_SQUEEZE_HIDDEN;
+        sample->open += !is_seen && one->answer != ENF_SQUEEZE_HIDDEN;
+    }
+}
+
+static enf_status decide(enf_world_lines *lines, const enf_world_air *air, decision *decisions, int32_t count,
                          enf_error *error) {
-    enf_squeeze_answer answer = ENF_SQUEEZE_SEEN;
-    enf_status status = ENF_OK;
-    if (!enf_pvs_get(&decider->lines->seen, pair[0], pair[1])) // it may have been on the way of others
-        status = enf_world_pairs_decide(decider, pair[0], pair[1], STEPS, &answer, error);
-    if (!status) note(sample, answer);
+    enf_world_pairs decider;
+    enf_status status = enf_world_pairs_make(&decider, air, lines, 1, error);
+    for (int32_t k = 0; !status && k < count; k++) {
+        decision *one = &decisions[k];
+        if (enf_pvs_get(&lines->seen, one->pair[0], one->pair[1])) continue; // on the way of others
+        status = enf_world_pairs_decide(&decider, one->pair[0], one->pair[1], STEPS, &one->answer, error);
+    }
+    enf_world_pairs_free(&decider);
     return status;
 }
 
@@ -58,14 +70,15 @@ enf_status cli_pairs_sample(enf_world_lines *lines, const enf_world_air *air, co
     *sample = (cli_pair_sample){.unseen = count_unseen(lines, claimed)};
     if (!air->uses_leafs) return ENF_OK;
     if (count > sample->unseen) count = (int32_t)sample->unseen;
-    int32_t(*pairs)[2] = enf_array_new((size_t)count, sizeof *pairs);
-    if (!pairs) return enf_fail_memory(error, "the pairs");
-    draw(lines, claimed, sample->unseen, count, pairs);
-    enf_world_pairs decider;
-    enf_status status = enf_world_pairs_make(&decider, air, lines, 1, error);
-    for (int32_t k = 0; !status && k < count; k++) status = decide(&decider, pairs[k], sample, error);
-    enf_world_pairs_free(&decider);
-    free(pairs);
+    decision *decisions = enf_array_zeroed((size_t)count, sizeof *decisions);
+    if (!decisions) return enf_fail_memory(error, "the pairs");
+    draw(lines, claimed, sample->unseen, count, decisions);
+    enf_status status = decide(lines, air, decisions, count, error);
+    if (!status) {
+        sample->decided = count;
+        sum_up(lines, decisions, sample);
+    }
+    free(decisions);
     return status;
 }
 

@@ -203,6 +203,10 @@ static enf_status look_closely(deciding *deciding, int32_t first, int32_t length
         for (int32_t k = 0; from->items[i].leaf == first && k < to->count; k++) {
             enf_squeeze_answer answer;
             if (to->items[k].leaf != last || status || deciding->is_seen) continue;
+            if (pairs->squeeze.steps <= 0) {
+                deciding->is_open = true;
+                continue;
+            }
             status = squeeze(deciding, length, &from->items[i].solid, &to->items[k].solid, &answer, error);
             deciding->is_seen = deciding->is_seen || answer == ENF_SQUEEZE_SEEN;
             deciding->is_open = deciding->is_open || answer == ENF_SQUEEZE_OPEN;
