@@ -6,6 +6,7 @@
 #include "build/write.h"
 #include "cli/bench.h"
 #include "cli/bench_folder.h"
+#include "cli/bench_pairs.h"
 #include "cli/bench_world.h"
 #include "cli/cli.h"
 #include "cli/job.h"
@@ -24,12 +25,15 @@ typedef struct request {
     cli_settings settings;
     int method, runs;
     double lines; ///< at most so many
+    int pairs;    ///< of those not seen then, so many are decided
 } request;
 
 typedef struct row {
     int32_t cells;
-    double rest, pvs;                           ///< seconds by the clock
-    int64_t claimed, seen, missed, last, lines; ///< pairs i < j; last: that the last round found
+    double rest, pvs;                     ///< seconds by the clock
+    int64_t claimed, seen, missed, lines; ///< pairs i < j; lines
+    int64_t last;                         ///< pairs that the last whole round found; -1: there was none
+    cli_pair_sample sample;
 } row;
 
 static int64_t count_missed(const enf_pvs *seen, const enf_pvs *claimed) {
@@ -57,19 +61,24 @@ static enf_status throw_lines(const request *request, const enf_file_view *view,
     if (!status) status = enf_world_lines_make(&lines, view, 1, error);
     for (int32_t i = 0; !status && i < view->portal_count; i++) // neighbours count as seen
         enf_pvs_set(&lines.seen, view->portals[i].from, view->portals[i].to);
+    row->last = -1;
     for (bool goes_on = true; !status && goes_on && lines.count < most;) {
-        const int64_t before = count_pairs(&lines.seen), thrown = lines.count;
+        const int64_t before = count_pairs(&lines.seen);
         bool good = true;
         enf_world_lines_aim(&lines, claimed, TRIES, most);
         enf_world_views_aim(&lines, &air, claimed, VIEWS, most, &good);
         if (!good) status = enf_fail_memory(error, "the views");
         const int64_t now = count_pairs(&lines.seen);
-        if (lines.count > thrown) row->last = now - before;
+        if (lines.count < most) row->last = now - before;
         goes_on = (double)(now - before) > saturated * (double)now;
     }
     if (!status) {
         row->lines = lines.count;
         row->seen = count_pairs(&lines.seen);
+        if (request->pairs > 0)
+            status = cli_pairs_sample(&lines, &air, claimed, request->pairs, &row->sample, error);
+    }
+    if (!status) {
         row->missed = count_missed(&lines.seen, claimed);
     }
     enf_world_lines_free(&lines);
@@ -124,19 +133,35 @@ static enf_status compile(const request *request, const char *path, enf_build_im
 }
 
 static void print_head(void *user) {
-    (void)user;
-    printf("%-24s %6s %8s %8s %6s %9s %9s %7s %7s %9s %7s\n", "world", "cells", "rest s", "pvs s", "ratio",
+    const request *request = user;
+    printf("%-24s %6s %8s %8s %6s %9s %9s %7s %7s %9s %7s", "world", "cells", "rest s", "pvs s", "ratio",
            "pairs", "seen", "excess", "missed", "lines", "last");
+    if (request->pairs > 0) printf(" %7s %7s %7s %7s %7s", "sample", "hidden", "open", "about", "at most");
+    printf("\n");
+}
+
+static double percent(double part, double whole) {
+    return whole > 0 ? 100 * part / whole : 0;
 }
 
 static void print_row(void *user, const char *name, const void *data) {
+    const request *request = user;
     const row *row = data;
-    (void)user;
-    printf("%-24s %6" PRId32 " %8.3f %8.3f %6.2f %9" PRId64 " %9" PRId64 " %6.1f%% %7" PRId64 " %9" PRId64
-           " %6.2f%%\n",
+    printf("%-24s %6" PRId32 " %8.3f %8.3f %6.2f %9" PRId64 " %9" PRId64 " %6.1f%% %7" PRId64 " %9" PRId64,
            name, row->cells, row->rest, row->pvs, row->pvs / row->rest, row->claimed, row->seen,
-           row->seen > 0 ? 100.0 * (double)(row->claimed - row->seen) / (double)row->seen : 0, row->missed,
-           row->lines, row->seen > 0 ? 100.0 * (double)row->last / (double)row->seen : 0);
+           percent((double)(row->claimed - row->seen), (double)row->seen), row->missed, row->lines);
+    if (row->last < 0)
+        printf(" %7s", "-");
+    else
+        printf(" %6.2f%%", percent((double)row->last, (double)row->seen));
+    if (request->pairs > 0) {
+        const cli_pair_sample *sample = &row->sample;
+        double about, most;
+        cli_pairs_estimate(sample, &about, &most);
+        printf(" %7d %7d %7d %6.1f%% %6.1f%%", sample->decided, sample->hidden, sample->open,
+               percent(about, (double)row->claimed - about), percent(most, (double)row->claimed - most));
+    }
+    printf("\n");
     fflush(stdout);
 }
 
@@ -152,7 +177,7 @@ static int work(void *user, const char *path, const char *name, void *result) {
 static int visit_generated(request *request) {
     int status = ENF_OK;
     const char *name;
-    print_head(NULL);
+    print_head(request);
     for (size_t i = 0; (name = enf_gen_list(i, NULL)) != NULL; i++) {
         char *path = NULL;
         enf_error error = {0};
@@ -162,7 +187,7 @@ static int visit_generated(request *request) {
             fprintf(stderr, "%s\n", error.text);
         else
             now = work(request, path, name, &row);
-        if (!now) print_row(NULL, name, &row);
+        if (!now) print_row(request, name, &row);
         if (now) status = now;
         cli_world_remove(path);
     }
@@ -181,6 +206,9 @@ int cli_bench_worlds(int argc, char **argv) {
                              cli_pvs_choices + CLI_PVS_METHOD, false},
                             {"--lines", 0, CLI_LENGTH, &request.lines, "N",
                              "at most so many lines a world; default 1e7", NULL, false},
+                            {"--pairs", 0, CLI_COUNT, &request.pairs, "N",
+                             "so many pairs that no line has seen are decided one by one; default none", NULL,
+                             false},
                             {"--runs", 0, CLI_COUNT, &request.runs, "N",
                              "medians over so many runs, at most 15; default 3", NULL, false},
                             CLI_LEVELS_OPTION(folder),
@@ -188,7 +216,8 @@ int cli_bench_worlds(int argc, char **argv) {
                             {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench worlds",
-        .usage = "[DIR] [--method METHOD] [--lines N] [--runs N] [--levels GLOB] [options of compile]",
+        .usage =
+            "[DIR] [--method METHOD] [--lines N] [--pairs N] [--runs N] [--levels GLOB] [options of compile]",
         .summary =
             "The visible sets of each level in a folder, or of the built-in worlds: seconds by the clock of\n"
             "the rest of the compile and of the visible sets; pairs of cells that the sets claim, that "
@@ -196,8 +225,12 @@ int cli_bench_worlds(int argc, char **argv) {
             "have seen, and that were seen but not claimed (missed); excess: claimed, but not seen. Lines "
             "are\n"
             "thrown at pairs not yet seen, at random and from random points through what a view from there\n"
-            "leaves open, round after round; last: what the last round still found, in shares of all that\n"
-            "was seen.",
+            "leaves open, round after round; last: what the last whole round still found, in shares of all\n"
+            "that was seen. With --pairs, random ones of the pairs that are claimed and were not seen are\n"
+            "decided, each by a search for a line along all ways from one cell to the other; hidden: there\n"
+            "is none; open: the search did not come to an end. What they say of all such pairs makes the\n"
+            "excess about so much (what is open taken for hidden), and, with 97.5 %% confidence, at most so\n"
+            "much.",
         .options = options,
         .operands_min = 0,
         .operands_max = 1,

@@ -155,10 +155,19 @@ static void make_graph(enf_portal_graph *graph, double height) {
     assert_int_equal(enf_portal_graph_finish(graph, &error), ENF_OK);
 }
 
+/// As a cube around a point, that far to each side.
+static bool meets_near(const enf_separators *separators, const double point[3], double distance) {
+    const double half[3] = {distance, distance, distance};
+    double points[8][3];
+    for (int i = 0; i < 8; i++)
+        for (int axis = 0; axis < 3; axis++)
+            points[i][axis] = point[axis] + (i >> axis & 1 ? distance : -distance);
+    return enf_separators_meet(separators, point, half, (const double(*)[3])points, 8);
+}
+
 /// As a body of a single point.
 static bool meets(const enf_separators *separators, const double point[3]) {
-    const double half[3] = {0}, points[1][3] = {{point[0], point[1], point[2]}};
-    return enf_separators_meet(separators, point, half, points, 1);
+    return meets_near(separators, point, 0);
 }
 
 /// A point of the hull of some points.
@@ -174,7 +183,8 @@ static void mix(const double (*points)[3], int32_t count, double point[3]) {
         for (int axis = 0; axis < 3; axis++) point[axis] += weights[i] / sum * points[i][axis];
 }
 
-/// Lines from the body through the first opening are within what is left behind it.
+/// Lines from the body through the first opening, along its edges and the body's, too, are within what is
+/// left behind it, or as near to that as two tolerances.
 static int check_lines(const enf_shapes *shapes, const enf_body *body, const double (*points)[3],
                        int32_t count) {
     enf_separators separators;
@@ -182,8 +192,7 @@ static int check_lines(const enf_shapes *shapes, const enf_body *body, const dou
     double corners[8][3];
     int passed = 0;
     for (int32_t i = 0; i < to.count; i++) enf_outline_corner(&to, i, corners[i]);
-    enf_separators_from_body(&separators, shapes, body, &to, 0, shapes->shapes[0].middle,
-                             shapes->shapes[0].half);
+    enf_separators_from_body(&separators, shapes, body, &to, 0);
     for (int i = 0; i < 50; i++) {
         double a[3], b[3], c[3];
         mix(points, count, a);
@@ -191,7 +200,7 @@ static int check_lines(const enf_shapes *shapes, const enf_body *body, const dou
         if (b[2] - a[2] < 1e-3) continue;
         const double share = random_between(0, 3) / (b[2] - a[2]);
         for (int axis = 0; axis < 3; axis++) c[axis] = b[axis] + share * (b[axis] - a[axis]);
-        assert_true(meets(&separators, c));
+        assert_true(meets_near(&separators, c, 2 * shapes->tolerance));
         passed++;
     }
     return passed;
@@ -240,8 +249,7 @@ static void test_separators_from_a_body_are_tight(void **unused) {
     assert_int_equal(body.corners.count, 8);
     assert_int_equal(body.edge_count, 12);
     const enf_outline to = enf_shape_outline(&shapes, 0);
-    enf_separators_from_body(&separators, &shapes, &body, &to, 0, shapes.shapes[0].middle,
-                             shapes.shapes[0].half);
+    enf_separators_from_body(&separators, &shapes, &body, &to, 0);
     // From height 1 through height 2 to height 3: x = 2 * 1 - (-1) at most, from the cube's side x = -1.
     const double inside[2][3] = {{2.999, 0, 3}, {1.499, 1.499, 3}},
                  outside[2][3] = {{3.001, 0, 3}, {2.001, 2.001, 3}};
@@ -253,10 +261,43 @@ static void test_separators_from_a_body_are_tight(void **unused) {
     enf_portal_graph_free(&graph);
 }
 
+/// From a box below the ground through a window on it: what lies below the ground behind that, up to it, is
+/// not seen, though all three touch its plane, and box and window each other, maybe.
+static void test_sight_along_a_plane_is_none(void **unused) {
+    (void)unused;
+    const double window[4][3] = {{1, -1, 0}, {1, 1, 0}, {1, 1, 1}, {1, -1, 1}},
+                 below[4][3] = {{2, -1, -1}, {2, 1, -1}, {2, 1, 0}, {2, -1, 0}},
+                 above[4][3] = {{2, -1, -1}, {2, 1, -1}, {2, 1, 1e-6}, {2, -1, 1e-6}};
+    double points[8][3];
+    enf_portal_graph graph = {.cell_count = 4};
+    enf_error error;
+    enf_shapes shapes;
+    enf_body body;
+    enf_separators separators;
+    enf_window left;
+    for (int i = 0; i < 8; i++)
+        for (int axis = 0; axis < 3; axis++) points[i][axis] = (i >> axis & 1) - (axis == 2);
+    assert_true(enf_portal_graph_add(&graph, 0, 1, window, 4) &&
+                enf_portal_graph_add(&graph, 1, 2, below, 4) && enf_portal_graph_add(&graph, 1, 3, above, 4));
+    assert_int_equal(enf_portal_graph_finish(&graph, &error), ENF_OK);
+    assert_true(enf_shapes_make(&shapes, &graph));
+    for (int k = 0; k < 2; k++) { // the box touches the window, or does not
+        for (int i = 0; i < 8; i++) points[i][0] -= k;
+        enf_body_make(&body, (const double(*)[3])points, 8, shapes.tolerance / 8);
+        const enf_outline to = enf_shape_outline(&shapes, 0);
+        enf_separators_from_body(&separators, &shapes, &body, &to, 0);
+        assert_int_equal(enf_separators_cut(&separators, &shapes, 2, &left), ENF_REMAINS_NOTHING);
+        assert_int_equal(enf_separators_cut(&separators, &shapes, 4, &left), ENF_REMAINS_PART);
+    }
+    enf_shapes_free(&shapes);
+    enf_portal_graph_free(&graph);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_body_holds_its_points),
                                        cmocka_unit_test(test_a_body_of_many_points_is_their_hull),
                                        cmocka_unit_test(test_separators_leave_what_lines_from_a_body_reach),
-                                       cmocka_unit_test(test_separators_from_a_body_are_tight)};
+                                       cmocka_unit_test(test_separators_from_a_body_are_tight),
+                                       cmocka_unit_test(test_sight_along_a_plane_is_none)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -262,7 +262,7 @@ static void take_gap(enf_body_beams *beams, int32_t portal, gap *gap) {
 static void need_separators(enf_body_beams *beams, const gap *gap, bool *ready) {
     if (!*ready)
         enf_separators_from_body(&beams->separators, beams->ways->shapes, &beams->body, &gap->outline,
-                                 gap->portal, gap->middle, gap->half);
+                                 gap->portal);
     *ready = true;
 }
 

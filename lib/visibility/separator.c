@@ -15,11 +15,6 @@ static const double band_tolerances = 0x1p14;
 /// nearer than they look by `contact_error`, as corners within the band count for all that is near them.
 static const double near = 0x1p-12, contact_error = 0x1p-30;
 
-/// Of the size of the world: bodies that touch a window are taken to be this far from it. Sight is lost by it
-/// only if it takes off less than that of a body, in a corner that touches the window, and rounding is
-/// against it; what a partition of the air makes of the world is not better than that.
-static const double body_gap = 0x1p-20;
-
 /// Two windows and the way between them.
 typedef struct passage {
     const enf_shapes *shapes;
@@ -275,6 +270,16 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
     enf_separators_between(separators, shapes, &one, from_portal, &two, to_portal);
 }
 
+// Between a body and a window it is different: what planes must leave over there is a line of each bundle,
+// not each line. Take a sight line with all lines near it, as far as some radius, and move it down towards
+// the plane by a tolerance: that line passes the window, too, so that the sight line passes it at least a
+// tolerance above the plane. It was below or at the plane before, and so it rises, and stays that high for
+// good. No error of a corner is made larger by it, however near to the body the window is. All lines around
+// the sight line within a radius that is a little smaller (by three tolerances) do the same. So what planes
+// have to leave begins a tolerance above them. After n windows those sights are there still that had 3n
+// tolerances of room around them; those that only touch a plane, as along a wall or the edge of a step, are
+// gone. Both sides of a plane are measured, corner by corner: how it was found does not matter.
+
 /// Edges of a body, and the way to turn round each: twice its number, and 1 for backwards.
 typedef struct turns {
     int32_t count;
@@ -334,7 +339,7 @@ ENF_PART_OF_WIDE void choose_turns(const passage *passage, const enf_body *body,
 
 /// Four of these edges, and the plane through each that touches the window, by its normal of any length.
 typedef struct body_edges {
-    enf_four a[3], left[3], right[3], normal[3];
+    enf_four a[3], along[3], left[3], right[3], normal[3];
 } body_edges;
 
 ENF_PART_OF_WIDE enf_four gather(const double *from, const int32_t *places) {
@@ -347,19 +352,19 @@ ENF_PART_OF_WIDE void turn_body_edges(const passage *passage, const enf_body *bo
     const enf_outline *window = passage->one;
     const int32_t places[ENF_FOUR] = {turns[0] >> 1, turns[1] >> 1, turns[2] >> 1, turns[3] >> 1};
     const enf_four_mask back = -(enf_four_mask){turns[0] & 1, turns[1] & 1, turns[2] & 1, turns[3] & 1};
-    enf_four edge[3], way[3], next[3];
+    enf_four way[3], next[3];
     for (int axis = 0; axis < 3; axis++) {
         edges->a[axis] = gather(body->from[axis], places);
         edges->left[axis] = gather(body->left[axis], places);
         edges->right[axis] = gather(body->right[axis], places);
-        edge[axis] = gather(body->along[axis], places);
-        edge[axis] = (enf_four)((enf_four_mask)edge[axis] ^ (back & INT64_MIN));
+        edges->along[axis] = gather(body->along[axis], places);
+        edges->along[axis] = (enf_four)((enf_four_mask)edges->along[axis] ^ (back & INT64_MIN));
         way[axis] = window->at[axis][0] - edges->a[axis];
     }
-    cross_four(edge, way, edges->normal);
+    cross_four(edges->along, way, edges->normal);
     for (int32_t i = 1; i < window->count; i++) {
         for (int axis = 0; axis < 3; axis++) way[axis] = window->at[axis][i] - edges->a[axis];
-        cross_four(edge, way, next);
+        cross_four(edges->along, way, next);
         const enf_four_mask behind = dot_four(edges->normal, way) < 0;
         for (int axis = 0; axis < 3; axis++)
             edges->normal[axis] = enf_four_choose(behind, next[axis], edges->normal[axis]);
@@ -372,17 +377,27 @@ ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passag
                                         const body_edges *edges, enf_four_mask good) {
     good &= (dot_four(edges->normal, edges->left) <= 0) & (dot_four(edges->normal, edges->right) <= 0);
     if (!enf_four_bits(good)) return;
-    const double swing = find_swing(passage, passage->gap), tolerance = passage->shapes->tolerance;
+    const double tolerance = passage->shapes->tolerance;
     const enf_four square = dot_four(edges->normal, edges->normal), inverse = inverse_root(square);
-    enf_four unit[3];
+    enf_four unit[3], second;
     for (int axis = 0; axis < 3; axis++) unit[axis] = edges->normal[axis] * inverse;
-    enf_four second;
-    const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit, &second),
-                   tilt = 2 + 4 * passage->span * passage->shapes->extent * inverse,
-                   slack = tolerance * (tilt + swing);
+    const enf_four behind = dot_four(unit, edges->a), front = lowest(passage->one, unit, &second);
     good &= (square > 0) & (inverse < HUGE_VAL) & (behind <= front + tolerance) &
-            (slack <= passage->shapes->extent);
-    add_good(separators, unit, front - slack, good);
+            (enf_four_abs(dot_four(unit, edges->along)) <= tolerance);
+    add_good(separators, unit, front + tolerance, good);
+}
+
+/// The planes through edges of the window, which are turned so as to have the body behind them. `one` of the
+/// passage is the window, `other` the body.
+ENF_PART_OF_WIDE void add_window_planes(enf_separators *separators, const passage *passage) {
+    const enf_outline *window = passage->one;
+    for (int32_t first = 0; first < window->count; first += ENF_FOUR) {
+        if (separators->count > ENF_SEPARATORS_MOST - ENF_FOUR) return;
+        tangents tangents = find_tangents(passage, first);
+        for (int axis = 0; axis < 3; axis++) tangents.normal[axis] = -tangents.normal[axis];
+        add_good(separators, tangents.normal, passage->shapes->tolerance - tangents.behind,
+                 tangents.good & are_edges(window, first));
+    }
 }
 
 /// The planes through edges of the body. `one` of the passage is the window, `other` the body.
@@ -400,22 +415,10 @@ ENF_PART_OF_WIDE void add_body_planes(enf_separators *separators, const passage 
 }
 
 ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes,
-                                           const enf_body *body, const enf_outline *to, int32_t to_portal,
-                                           const double middle[3], const double half[3]) {
-    double apart[3], span = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        const double way = fabs(middle[axis] - body->middle[axis]), halves = half[axis] + body->half[axis];
-        apart[axis] = way > halves ? way - halves : 0;
-        span += way + halves;
-    }
-    const passage passage = {.shapes = shapes,
-                             .one = to,
-                             .other = &body->corners,
-                             .turns = to_portal & 1,
-                             .gap = fmax(sqrt(enf_dot(apart, apart)), shapes->extent * body_gap),
-                             .span = span};
+                                           const enf_body *body, const enf_outline *to, int32_t to_portal) {
+    const passage passage = {.shapes = shapes, .one = to, .other = &body->corners, .turns = to_portal & 1};
     separators->count = 0;
-    add_far_planes(separators, &passage);
+    add_window_planes(separators, &passage);
     add_body_planes(separators, &passage, body);
     enf_separators_close(separators);
 }

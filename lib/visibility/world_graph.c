@@ -93,6 +93,27 @@ static const enf_file_corner *piece_corners(const enf_file_view *view, int32_t p
     return corners + offset[0];
 }
 
+/// Of the largest coordinate: what is thinner has no plane, as corners are rounded, and no line passes it for
+/// sure (sight.h).
+static const double thinnest = 0x1p-40;
+
+/// Is the polygon about as thin as rounding? Its area is that of a rectangle of its longest extent, at most.
+static bool is_thin(const enf_file_view *view, const double (*corners)[3], int64_t count) {
+    double area[3] = {0}, longest = 0, largest = 0;
+    for (int axis = 0; axis < 3; axis++)
+        largest = fmax(largest, fmax(fabs(view->frame->box_min[axis]), fabs(view->frame->box_max[axis])));
+    for (int64_t i = 1; i < count; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+            const int64_t next = i + 1 < count ? i + 1 : 0;
+            area[axis] += ((corners[i][u] - corners[0][u]) * (corners[next][v] - corners[0][v]) -
+                           (corners[i][v] - corners[0][v]) * (corners[next][u] - corners[0][u])) /
+                          2;
+            longest = fmax(longest, fabs(corners[i][axis] - corners[0][axis]));
+        }
+    return sqrt(enf_dot(area, area)) <= thinnest * largest * longest;
+}
+
 static bool add_piece(enf_portal_graph *graph, const enf_file_view *view, int32_t piece, double (**buffer)[3],
                       size_t *capacity) {
     const int32_t *fine = view->facet_fine[view->piece_facet[piece]];
@@ -103,6 +124,7 @@ static bool add_piece(enf_portal_graph *graph, const enf_file_view *view, int32_
     if (!enf_array_reserve(*buffer, *capacity, count)) return false;
     for (int64_t i = 0; i < count; i++)
         enf_view_to_world(view, view->vertex_position[corners[i].vertex], (*buffer)[i]);
+    if (is_thin(view, (const double(*)[3]) * buffer, count)) return true;
     int mirrored = view->frame->handedness < 0;
     return enf_portal_graph_add(graph, fine[mirrored], fine[!mirrored], (const double(*)[3]) * buffer,
                                 (int32_t)count);

@@ -10,8 +10,9 @@
 /// that lie in one plane, their convex hull. *graph is overwritten; free it in any case.
 enf_status enf_world_graph_make(enf_portal_graph *graph, const enf_file_view *view, enf_error *error);
 
-/// The fine cells of a world, all convex, and the open pieces of the facets between them; fine cells in
-/// discarded regions have no openings. Needs the exact part of the file (view->has_exact).
+/// The fine cells of a world, all convex, and the open pieces of the facets between them, but for those about
+/// as thin as rounding; fine cells in discarded regions have no openings. Needs the exact part of the file
+/// (view->has_exact).
 enf_status enf_world_graph_make_fine(enf_portal_graph *graph, const enf_file_view *view, enf_error *error);
 
 #endif

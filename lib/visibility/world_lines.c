@@ -49,6 +49,7 @@ enf_status enf_world_lines_make(enf_world_lines *lines, const enf_file_view *vie
     if (!lines->cell_first || !lines->cell_openings || !lines->passed || !lines->cells ||
         !enf_shapes_make(&lines->shapes, &lines->graph) || !enf_sight_make(&lines->sight, &lines->shapes))
         return enf_fail_memory(error, "the fine cells");
+    lines->sight.trusts_order = true;
     list_openings(lines);
     return ENF_OK;
 }

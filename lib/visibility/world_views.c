@@ -2,7 +2,7 @@
 #include "visibility/world_views.h"
 
 #include "base/array.h"
-#include "visibility/separator.h"
+#include "visibility/view_cone.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -39,36 +39,6 @@ static void mix_corners(viewer *viewer, int32_t body, double point[3]) {
     for (int axis = 0; axis < 3; axis++) point[axis] /= sum;
 }
 
-/// The planes through the eye and the edges of a window. Those that go by the eye are left out.
-static void find_cone(const viewer *viewer, const enf_window *window, int32_t portal, enf_separators *cone) {
-    const double sign = portal & 1 ? -1 : 1;
-    cone->count = 0;
-    for (int32_t i = 0; i < window->count && cone->count < ENF_SEPARATORS_MOST; i++) {
-        double a[3], b[3], normal[3];
-        for (int axis = 0; axis < 3; axis++) {
-            a[axis] = window->at[axis][i] - viewer->eye[axis];
-            b[axis] = window->at[axis][i + 1] - viewer->eye[axis]; // windows are closed
-        }
-        for (int axis = 0; axis < 3; axis++) {
-            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-            normal[axis] = sign * (a[u] * b[v] - a[v] * b[u]);
-        }
-        const double length = sqrt(enf_dot(normal, normal));
-        if (!(length > 0)) continue;
-        for (int axis = 0; axis < 3; axis++) cone->normal[axis][cone->count] = normal[axis] / length;
-        cone->least[cone->count++] = enf_dot(normal, viewer->eye) / length;
-    }
-    enf_separators_close(cone);
-}
-
-static bool is_within(const enf_separators *cone, const double point[3]) {
-    for (int32_t i = 0; i < cone->count; i++) {
-        const double normal[3] = {cone->normal[0][i], cone->normal[1][i], cone->normal[2][i]};
-        if (enf_dot(normal, point) < cone->least[i]) return false;
-    }
-    return true;
-}
-
 /// A random point of the window.
 static void mix_window(viewer *viewer, const enf_window *window, double point[3]) {
     double sum = 0;
@@ -88,7 +58,7 @@ static void aim(viewer *viewer, const enf_separators *cone, const enf_window *wi
     memcpy(line.from, viewer->eye, sizeof line.from);
     for (int k = 0; k < AIMS && !enf_pvs_get(&viewer->lines->seen, viewer->cell, cell); k++) {
         mix_corners(viewer, body, line.to);
-        if (!is_within(cone, line.to)) mix_window(viewer, window, line.to);
+        if (!enf_view_cone_has(cone, line.to)) mix_window(viewer, window, line.to);
         enf_world_lines_follow(viewer->lines, &line, viewer->cell);
     }
 }
@@ -101,7 +71,7 @@ static void look(viewer *viewer, int32_t via, const enf_window *window, int dept
     enf_separators cone;
     enf_window next;
     if (depth == DEPTH_MOST || viewer->lines->count >= viewer->most) return;
-    find_cone(viewer, window, via, &cone);
+    enf_view_cone_find(&cone, viewer->eye, window, via);
     for (int32_t body = bodies->cell_first[leaf]; body < bodies->cell_first[leaf + 1]; body++) {
         const int32_t cell = bodies->owner[body], first = bodies->corner_first[body];
         if (!enf_pvs_get(viewer->claimed, viewer->cell, cell)) continue;
