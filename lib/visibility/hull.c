@@ -105,19 +105,22 @@ ENF_PART_OF_WIDE uint64_t find_outside(const enf_window *window, const enf_outli
     return outside & ((UINT64_C(1) << other->count) - 1);
 }
 
-/// The corners of two windows, in the coordinate plane, and the hull of those of one and some of the other.
+/// The corners of two windows, and the hull of those of one and some of the other.
 typedef struct rim {
-    double u[2 * (EDGES_MOST + ENF_OUTLINE_MORE)], v[2 * (EDGES_MOST + ENF_OUTLINE_MORE)];
+    double at[3][2 * (EDGES_MOST + ENF_OUTLINE_MORE)];
+    const double *u, *v; ///< the two that the coordinate plane is about
     int32_t count;
     uint8_t corners[2 * EDGES_MOST + 2]; ///< round the hull; the first one again at the end
 } rim;
 
 static void make_rim(const enf_window *window, const enf_outline *other, const int32_t axes[2], rim *rim) {
     const int32_t count = window->count;
-    enf_outline_copy(rim->u, window->at[axes[0]], count);
-    enf_outline_copy(rim->v, window->at[axes[1]], count);
-    enf_outline_copy(rim->u + count, other->at[axes[0]], other->count);
-    enf_outline_copy(rim->v + count, other->at[axes[1]], other->count);
+    for (int axis = 0; axis < 3; axis++) {
+        enf_outline_copy(rim->at[axis], window->at[axis], count);
+        enf_outline_copy(rim->at[axis] + count, other->at[axis], other->count);
+    }
+    rim->u = rim->at[axes[0]];
+    rim->v = rim->at[axes[1]];
     for (int32_t i = 0; i < count; i++) rim->corners[i] = (uint8_t)i;
     rim->corners[count] = 0;
     rim->count = count;
@@ -183,15 +186,9 @@ static bool add_corners(rim *rim, uint64_t corners, int32_t begin) {
 }
 
 /// Makes the window what the rim says.
-static void take_rim(enf_window *window, const enf_outline *other, const rim *rim) {
-    const int32_t begin = window->count;
+static void take_rim(enf_window *window, const rim *rim) {
     for (int axis = 0; axis < 3; axis++) {
-        double at[EDGES_MOST + 1];
-        for (int32_t i = 0; i < rim->count; i++) {
-            const int32_t corner = rim->corners[i];
-            at[i] = corner < begin ? window->at[axis][corner] : other->at[axis][corner - begin];
-        }
-        for (int32_t i = 0; i < rim->count; i++) window->at[axis][i] = at[i];
+        for (int32_t i = 0; i < rim->count; i++) window->at[axis][i] = rim->at[axis][rim->corners[i]];
         enf_outline_close(window->at[axis], rim->count);
     }
     window->count = rim->count;
@@ -225,7 +222,7 @@ ENF_WIDE_TOO bool enf_hull_extend(enf_window *window, const enf_outline *other, 
     rim rim;
     make_rim(window, other, axes, &rim);
     if (add_corners(&rim, outside, window->count))
-        take_rim(window, other, &rim);
+        take_rim(window, &rim);
     else
         make_anew(window, other, axes);
     return true;
