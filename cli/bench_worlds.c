@@ -229,7 +229,7 @@ int cli_bench_worlds(int argc, char **argv) {
             "that was seen. With --pairs, random ones of the pairs that are claimed and were not seen are\n"
             "decided, each by a search for a line along all ways from one cell to the other; hidden: there\n"
             "is none; open: the search did not come to an end. What they say of all such pairs makes the\n"
-            "excess about so much (what is open taken for hidden), and, with 97.5 %% confidence, at most so\n"
+            "excess about so much (what is open taken for hidden), and, with 97.5 % confidence, at most so\n"
             "much.",
         .options = options,
         .operands_min = 0,
