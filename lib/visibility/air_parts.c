@@ -212,6 +212,7 @@ typedef struct pieces {
 } pieces;
 
 static void append(pieces *all, const slicer *slicer) {
+    if (slicer->piece_count == 0) return;
     for (int32_t i = 0; i < slicer->piece_count; i++) {
         all->items[all->count] = slicer->pieces[i];
         all->items[all->count++].first += all->corner_count;
