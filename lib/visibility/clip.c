@@ -17,7 +17,7 @@ ENF_PART_OF_WIDE bool meets_box(const enf_separators *separators, const enf_shap
         const enf_four reach = shape->half[0] * enf_four_abs(x) + shape->half[1] * enf_four_abs(y) +
                                shape->half[2] * enf_four_abs(z);
         nothing |= height < -reach;
-        some |= (height < reach) & bits;
+        some |= (height < reach - separators->spare) & bits;
     }
     *needed = (uint64_t)((some[0] | some[1]) | (some[2] | some[3]));
     return !((nothing[0] | nothing[1]) | (nothing[2] | nothing[3]));
@@ -93,14 +93,22 @@ static int32_t keep_runs(piece piece, const polygon *polygon, const double *heig
     return made;
 }
 
+/// Is no corner further behind than that? Cuts that touch an edge or a corner would only add corners.
+static bool takes_little(const double *heights, int32_t count, double spare) {
+    for (int32_t i = 0; i < count; i++)
+        if (heights[i] < -spare) return false;
+    return true;
+}
+
 /// Cuts a piece off the polygon, and says what is left; only a part is put into the piece, and becomes the
 /// polygon.
-ENF_PART_OF_WIDE enf_remains cut_off(polygon *polygon, piece piece, const enf_cut *cut) {
+ENF_PART_OF_WIDE enf_remains cut_off(polygon *polygon, piece piece, const enf_cut *cut, double spare) {
     double heights[CORNERS_MOST];
     if (polygon->count > CORNERS_MOST) return ENF_REMAINS_WHOLE;
     const uint64_t inside = find_heights(polygon, cut, heights);
     if (inside == first_bits(polygon->count)) return ENF_REMAINS_WHOLE;
     if (!inside) return ENF_REMAINS_NOTHING;
+    if (spare > 0 && takes_little(heights, polygon->count, spare)) return ENF_REMAINS_WHOLE;
     const uint64_t next = inside >> 1 | (inside & 1) << (polygon->count - 1), in = next & ~inside,
                    out = inside & ~next;
     polygon->count = in & (in - 1)
@@ -133,7 +141,7 @@ ENF_WIDE_TOO enf_remains enf_separators_cut(const enf_separators *separators, co
         const int i = __builtin_ctzll(needed);
         const enf_cut cut = {{separators->normal[0][i], separators->normal[1][i], separators->normal[2][i]},
                              separators->least[i]};
-        const enf_remains now = cut_off(&polygon, pieces[cut_count & 1], &cut);
+        const enf_remains now = cut_off(&polygon, pieces[cut_count & 1], &cut, separators->spare);
         if (now == ENF_REMAINS_NOTHING) return now;
         cut_count += now == ENF_REMAINS_PART;
     }

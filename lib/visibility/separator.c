@@ -239,6 +239,7 @@ void enf_separators_close(enf_separators *separators) {
 void enf_separators_begin(enf_separators *separators, const enf_shapes *shapes, int32_t from_portal) {
     const enf_cut cut = enf_shape_cut(shapes, from_portal);
     separators->count = 0;
+    separators->spare = 0;
     add_cut(separators, cut.normal, cut.least);
     enf_separators_close(separators);
 }
@@ -278,7 +279,8 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
 // the sight line within a radius that is a little smaller (by three tolerances) do the same. So what planes
 // have to leave begins a tolerance above them. After n windows those sights are there still that had 3n
 // tolerances of room around them; those that only touch a plane, as along a wall or the edge of a step, are
-// gone. Both sides of a plane are measured, corner by corner: how it was found does not matter.
+// gone. Both sides of a plane are measured, corner by corner: how it was found does not matter. What such a
+// plane would take off only where it touches, it leaves.
 
 /// Edges of a body, and the way to turn round each: twice its number, and 1 for backwards.
 typedef struct turns {
@@ -418,6 +420,7 @@ ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf
                                            const enf_body *body, const enf_outline *to, int32_t to_portal) {
     const passage passage = {.shapes = shapes, .one = to, .other = &body->corners, .turns = to_portal & 1};
     separators->count = 0;
+    separators->spare = 2 * shapes->tolerance;
     add_window_planes(separators, &passage);
     add_body_planes(separators, &passage, body);
     enf_separators_close(separators);

@@ -15,6 +15,7 @@ typedef struct enf_separators {
     int32_t count;
     double normal[3][ENF_SEPARATORS_MOST],
         least[ENF_SEPARATORS_MOST]; ///< keep what is in front: normal . x >= least
+    double spare;                   ///< cuts that take off no more than this are not made
 } enf_separators;
 
 /// Fills up to the next four, once all are there.

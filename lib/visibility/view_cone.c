@@ -6,6 +6,7 @@
 void enf_view_cone_find(enf_separators *cone, const double eye[3], const enf_window *window, int32_t portal) {
     const double sign = portal & 1 ? -1 : 1;
     cone->count = 0;
+    cone->spare = 0;
     for (int32_t i = 0; i < window->count && cone->count < ENF_SEPARATORS_MOST; i++) {
         double a[3], b[3], normal[3];
         for (int axis = 0; axis < 3; axis++) {
