@@ -67,7 +67,6 @@ static enf_status clean(kitchen *k) {
     enf_mesh *mesh = &k->build->mesh;
     enf_status status = enf_mesh_clean(mesh, &k->build->soup, &k->options->clean, k->error);
     if (status != ENF_OK) return status;
-    enf_soup_forget_lines(&k->build->soup);
     static const char *const turns[] = {
         [ENF_TURN_OFF] = "no planes recovered: tolerance 0",
         [ENF_TURN_ROUND] = "not turned: round coordinates",

@@ -38,14 +38,6 @@ void enf_soup_free(enf_soup *soup) {
     *soup = (enf_soup){0};
 }
 
-void enf_soup_forget_lines(enf_soup *soup) {
-    free(soup->polygon_line);
-    free(soup->polygon_file);
-    soup->polygon_line = NULL;
-    soup->polygon_file = NULL;
-    soup->polygon_line_capacity = soup->polygon_file_capacity = 0;
-}
-
 bool enf_soup_reject(enf_soup *soup, enf_reject reason, int32_t file, int64_t line, int32_t polygon) {
     if (!enf_array_reserve(soup->rejected, soup->rejected_capacity, soup->rejected_count + 1)) return false;
     soup->rejected[soup->rejected_count++] =

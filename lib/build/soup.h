@@ -38,11 +38,10 @@ typedef struct enf_soup {
     size_t texcoord_count, texcoord_capacity;
 
     size_t polygon_count, polygon_capacity;
-    int64_t *polygon_corner; ///< polygon_count + 1 offsets into the corner arrays
-    int64_t *polygon_line;  ///< where the polygon stands in its file (see enf_rejected.line); null once clean
-                            ///< is done
-    int32_t *polygon_file;  ///< index into files; likewise
-    int32_t *polygon_group; ///< index into groups
+    int64_t *polygon_corner;   ///< polygon_count + 1 offsets into the corner arrays
+    int64_t *polygon_line;     ///< where the polygon stands in its file (see enf_rejected.line)
+    int32_t *polygon_file;     ///< index into files
+    int32_t *polygon_group;    ///< index into groups
     int32_t *polygon_material; ///< index into materials, or -1
     size_t polygon_offset_capacity, polygon_line_capacity, polygon_file_capacity, polygon_group_capacity,
         polygon_material_capacity;
@@ -72,9 +71,6 @@ typedef struct enf_soup {
 } enf_soup;
 
 void enf_soup_free(enf_soup *soup);
-
-/// Forgets where polygons stand in their files: what is wrong with them has been found.
-void enf_soup_forget_lines(enf_soup *soup);
 
 /// Notes that something was left out. False when there is no memory.
 bool enf_soup_reject(enf_soup *soup, enf_reject reason, int32_t file, int64_t line, int32_t polygon);
