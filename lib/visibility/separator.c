@@ -279,8 +279,13 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
 // the sight line within a radius that is a little smaller (by three tolerances) do the same. So what planes
 // have to leave begins a tolerance above them. After n windows those sights are there still that had 3n
 // tolerances of room around them; those that only touch a plane, as along a wall or the edge of a step, are
-// gone. Both sides of a plane are measured, corner by corner: how it was found does not matter. What such a
-// plane would take off only where it touches, it leaves.
+// gone. (A tolerance is body_share of that of windows here.) Both sides of a plane are measured, corner by
+// corner: how it was found does not matter. What such a plane would take off only where it touches, it
+// leaves.
+
+/// Of the tolerance of windows: what such planes leave begins so far above them. It is some times what
+/// rounding does to corners.
+static const double body_share = 0x1p-6;
 
 /// Edges of a body, and the way to turn round each: twice its number, and 1 for backwards.
 typedef struct turns {
@@ -379,7 +384,7 @@ ENF_PART_OF_WIDE void add_body_tangents(enf_separators *separators, const passag
                                         const body_edges *edges, enf_four_mask good) {
     good &= (dot_four(edges->normal, edges->left) <= 0) & (dot_four(edges->normal, edges->right) <= 0);
     if (!enf_four_bits(good)) return;
-    const double tolerance = passage->shapes->tolerance;
+    const double tolerance = passage->shapes->tolerance * body_share;
     const enf_four square = dot_four(edges->normal, edges->normal), inverse = inverse_root(square);
     enf_four unit[3], second;
     for (int axis = 0; axis < 3; axis++) unit[axis] = edges->normal[axis] * inverse;
@@ -397,8 +402,9 @@ ENF_PART_OF_WIDE void add_window_planes(enf_separators *separators, const passag
         if (separators->count > ENF_SEPARATORS_MOST - ENF_FOUR) return;
         tangents tangents = find_tangents(passage, first);
         for (int axis = 0; axis < 3; axis++) tangents.normal[axis] = -tangents.normal[axis];
-        add_good(separators, tangents.normal, passage->shapes->tolerance - tangents.behind,
-                 tangents.good & are_edges(window, first));
+        const double tolerance = passage->shapes->tolerance * body_share;
+        const enf_four_mask good = tangents.good & (tangents.front + tolerance >= tangents.behind);
+        add_good(separators, tangents.normal, tolerance - tangents.behind, good & are_edges(window, first));
     }
 }
 
@@ -420,7 +426,7 @@ ENF_WIDE_TOO void enf_separators_from_body(enf_separators *separators, const enf
                                            const enf_body *body, const enf_outline *to, int32_t to_portal) {
     const passage passage = {.shapes = shapes, .one = to, .other = &body->corners, .turns = to_portal & 1};
     separators->count = 0;
-    separators->spare = 2 * shapes->tolerance;
+    separators->spare = 2 * shapes->tolerance * body_share;
     add_window_planes(separators, &passage);
     add_body_planes(separators, &passage, body);
     enf_separators_close(separators);

@@ -38,7 +38,7 @@ void enf_separators_find(enf_separators *separators, const enf_shapes *shapes, c
 /// The planes that part a body from `to`, a window of the directed portal `to_portal`, or of some in its
 /// plane, through an edge of one and a corner of the other: lines from the body that pass `to` stay in front
 /// from there on, for good by the tolerance of windows, if they have three tolerances of room around them.
-/// (All that have not may be lost.)
+/// (All that have not may be lost; so may be, where windows are merged, what has less room than a tolerance.)
 void enf_separators_from_body(enf_separators *separators, const enf_shapes *shapes, const enf_body *body,
                               const enf_outline *to, int32_t to_portal);
 
