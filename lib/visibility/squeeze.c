@@ -18,6 +18,9 @@ enum {
 /// Squeezed to less than this share of its length, a solid is worth another round.
 static const double worth = 0.8;
 
+/// Added to each of the random weights, so that they are not all 0.
+static const double least_weight = 1e-9;
+
 /// Of the size of the world: smaller solids are not halved, as separators leave about that much over.
 static const double tiny = 0x1p-19;
 
@@ -110,7 +113,7 @@ static void mix_corners(enf_squeeze *squeeze, const enf_solid *solid, double poi
     double sum = 0;
     memset(point, 0, 3 * sizeof *point);
     for (int32_t i = 0; i < solid->count; i++) {
-        const double weight = pow(next_share(squeeze), 4) + 1e-9;
+        const double weight = pow(next_share(squeeze), 4) + least_weight;
         sum += weight;
         for (int axis = 0; axis < 3; axis++) point[axis] += weight * solid->corners[i][axis];
     }
