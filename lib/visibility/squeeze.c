@@ -63,6 +63,7 @@ bool enf_squeeze_window(enf_window *window, const enf_separators *cuts) {
                     window->at[axis][i] + share * (window->at[axis][i + 1] - window->at[axis][i]);
             made++;
         }
+        if (made < 3) continue; // cannot be: some corner is in, and two edges are cut
         for (int axis = 0; axis < 3; axis++) enf_outline_close(left.at[axis], made);
         left.count = made;
         const enf_outline outline = enf_window_outline(&left);
