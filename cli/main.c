@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program `enfilade`: finds the command and runs it.
 #include "cli/cli.h"
+#include "cli/heap.h"
 
 #include <errno.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 #include <stdio.h>
 #include <string.h>
 
@@ -52,13 +50,7 @@ static bool is_later(const char *name) {
 }
 
 int main(int argc, char **argv) {
-#ifdef M_MMAP_THRESHOLD
-    // Big arrays go back to the system when they are freed, and move without being copied when they grow.
-    // (glibc raises its threshold otherwise as soon as the first one is freed.) Smaller ones, and some
-    // megabytes that they have left free, stay for what comes next: fresh pages from the system take time.
-    mallopt(M_MMAP_THRESHOLD, 2 << 20);
-    mallopt(M_TRIM_THRESHOLD, 16 << 20);
-#endif
+    cli_heap_prepare();
     if (argc < 2) {
         print_usage(stderr);
         return ENF_BAD_USAGE;

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE // MADV_HUGEPAGE
+#endif
+#include "cli/heap.h"
+
+#include "base/memory.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define OTHER_HEAP // these bring their own
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define OTHER_HEAP
+#endif
+#endif
+
+#if defined(__GLIBC__) && !defined(OTHER_HEAP)
+#include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+enum {
+    SPACE = 1 << 30,  ///< bytes set apart
+    MAPPED = 2 << 20, ///< larger arrays are maps of their own where the heap would have to grow for them
+    FREE_AT_END = 2047 << 20, ///< more than the space: freeing does not give it back
+    MOST_MAPS = 1 << 16
+};
+
+static void prefer_huge_pages(void *data, size_t bytes) {
+#ifdef MADV_HUGEPAGE
+    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), begin = (uintptr_t)data, end = begin + bytes;
+    begin = (begin + page - 1) / page * page;
+    end = end / page * page;
+    if (end > begin) madvise((char *)data + (begin - (uintptr_t)data), end - begin, MADV_HUGEPAGE);
+#else
+    (void)data;
+    (void)bytes;
+#endif
+}
+
+void cli_heap_prepare(void) {
+    const char *limiter;
+    uint64_t part = enf_memory_limit(&limiter) / 4;
+    size_t bytes = part < SPACE ? (size_t)part : SPACE;
+    mallopt(M_TRIM_THRESHOLD, FREE_AT_END);
+    mallopt(M_MMAP_MAX, 0); // from the heap, whatever its size
+    void *space = malloc(bytes);
+    if (space) prefer_huge_pages(space, bytes);
+    free(space);
+    mallopt(M_MMAP_MAX, MOST_MAPS);
+    mallopt(M_MMAP_THRESHOLD, MAPPED);
+}
+
+void cli_heap_trim(void) {
+    malloc_trim(0);
+}
+#else
+void cli_heap_prepare(void) {}
+void cli_heap_trim(void) {}
+#endif

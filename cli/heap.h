@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The heap of this process, made for what the commands do: few, large arrays, written once from end to end.
+//
+// A page that is written for the first time costs more than a microsecond on a virtual machine, and looking
+// up small pages of a large world costs time at every cache miss. So address space is set apart at the start,
+// large pages are asked for it, and what is freed there stays for what comes next.
+#ifndef CLI_HEAP_H
+#define CLI_HEAP_H
+
+/// Sets address space apart, no memory: 1 GiB, or a quarter of what the process may have if that is less.
+/// What does not fit in takes large arrays from the system, and gives them back. Without glibc nothing
+/// happens.
+void cli_heap_prepare(void);
+
+/// Gives back what is free at the end of the heap: a child that gets a limit of its own begins with this, and
+/// prepares again.
+void cli_heap_trim(void);
+
+#endif
