@@ -34,6 +34,11 @@ bool enf_array_reserve_bytes(void **data, size_t *capacity, size_t wanted, size_
     return true;
 }
 
+void enf_array_trim_bytes(void **data, size_t bytes) {
+    void *trimmed = realloc(*data, bytes > 0 ? bytes : 1);
+    if (trimmed) *data = trimmed;
+}
+
 void *enf_array_new(size_t count, size_t size) {
     if (count == 0) count = 1;
     return count > SIZE_MAX / size ? NULL : prefer_huge_pages(malloc(count * size), count * size);

@@ -386,8 +386,8 @@ static void take_tetrahedra(triangulation *d, enf_tetrahedra *out) {
     for (size_t t = 0; t < d->count; t++) {
         if (is_finite(d->tets[t].corner)) memmove(corners[count++], d->tets[t].corner, sizeof *corners);
     }
-    void *trimmed = realloc(d->tets, (count ? count : 1) * sizeof *corners);
-    *out = (enf_tetrahedra){.corners = trimmed ? trimmed : d->tets, .count = count};
+    enf_array_trim(corners, count);
+    *out = (enf_tetrahedra){.corners = corners, .count = count};
     d->tets = NULL;
 }
 

@@ -377,6 +377,10 @@ enf_status enf_tet_mesh_flip(enf_tet_mesh *tets, const enf_mesh *mesh, int32_t *
         mark_tiled(&f, mesh, tiled);
         good = flip_all(&f, mesh, tiled);
     }
+    enf_array_trim(tets->corners, tets->count);
+    enf_array_trim(tets->facets, tets->count);
+    enf_array_trim(tets->facet_corners, tets->facet_count);
+    enf_array_trim(tets->facet_sides, tets->facet_count);
     free_edges(&f.wanted);
     free(tiled);
     *flips = f.flips;

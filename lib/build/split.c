@@ -378,6 +378,7 @@ static bool finish_part(cutter *c, enf_yield *yield) {
     joiner->into = NULL;
     joiner->capacity = 0;
     yield->complex.cells_joined = joiner->count;
+    enf_subdivision_forget_facets(&c->space); // what the yield takes needs room
     return enf_yield_finish(yield, &c->space, into);
 }
 

@@ -16,6 +16,17 @@ void enf_subdivision_free(enf_subdivision *s) {
     memset(s, 0, sizeof *s);
 }
 
+void enf_subdivision_forget_facets(enf_subdivision *s) {
+    free(s->halves);
+    free(s->facets);
+    free(s->edge_half);
+    free(s->edge_slot);
+    s->halves = NULL;
+    s->facets = NULL;
+    s->edge_half = s->edge_slot = NULL;
+    s->half_capacity = s->facet_capacity = s->edge_capacity = s->slot_capacity = 0;
+}
+
 // ---------------------------------------------------------------------------------------------- numbers
 
 static int32_t new_half(enf_subdivision *s) {
@@ -201,6 +212,7 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
                            const enf_tet_part *part, size_t cuts) {
     size_t facets = (size_t)part->facet_count, count = (size_t)part->tetrahedron_count;
     size_t points = (size_t)geometry->point_count;
+    size_t nodes = cuts * 4 / 5, crossings = cuts * 7 / 10; // seldom more
     take_geometry(s, geometry);
     if (!s->geometry.kept) s->geometry.kept = enf_array_zeroed(1, sizeof *s->geometry.kept);
     s->facet_count = s->edge_count = s->node_count = 0;
@@ -216,10 +228,10 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
         !enf_array_reserve(s->cell_facet, s->cell_capacity, count + cuts + 1) ||
         !enf_array_reserve(s->cell_parent, s->parent_capacity, count + cuts + 1) ||
         !enf_array_reserve(s->cell_state, s->state_capacity, count + cuts + 1) ||
-        !enf_array_reserve(s->node_plane, s->node_capacity, cuts) ||
-        !enf_array_reserve(s->node_child, s->child_capacity, cuts) ||
-        !enf_array_reserve(s->geometry.crossings, s->geometry.crossing_capacity, cuts + 1) ||
-        !reserve_vertices(s, points + cuts + 1) || !reserve_pairing(s, points)) {
+        !enf_array_reserve(s->node_plane, s->node_capacity, nodes) ||
+        !enf_array_reserve(s->node_child, s->child_capacity, nodes) ||
+        !enf_array_reserve(s->geometry.crossings, s->geometry.crossing_capacity, crossings + 1) ||
+        !reserve_vertices(s, points + crossings + 1) || !reserve_pairing(s, points)) {
         return false;
     }
     for (int32_t c = 0; c < part->tetrahedron_count; c++) {

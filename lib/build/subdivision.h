@@ -112,6 +112,9 @@ bool enf_subdivision_start(enf_subdivision *subdivision, const enf_geometry *geo
                            const enf_tet_mesh *tets, const enf_tet_part *part, size_t cuts);
 void enf_subdivision_free(enf_subdivision *subdivision);
 
+/// Frees the facets and their edges; the trees of cuts and the vertices stay.
+void enf_subdivision_forget_facets(enf_subdivision *subdivision);
+
 /// From now on cells are held against this plane.
 void enf_subdivision_take_plane(enf_subdivision *subdivision, int32_t plane);
 

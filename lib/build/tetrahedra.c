@@ -183,10 +183,8 @@ enf_status enf_tet_mesh_pair(enf_tet_mesh *mesh, int32_t (*corners)[4], size_t c
         enf_tet_mesh_free(mesh);
         return status;
     }
-    void *trimmed = realloc(mesh->facet_corners, (size_t)mesh->facet_count * sizeof *mesh->facet_corners);
-    if (trimmed) mesh->facet_corners = trimmed;
-    trimmed = realloc(mesh->facet_sides, (size_t)mesh->facet_count * sizeof *mesh->facet_sides);
-    if (trimmed) mesh->facet_sides = trimmed;
+    enf_array_trim(mesh->facet_corners, mesh->facet_count);
+    enf_array_trim(mesh->facet_sides, mesh->facet_count);
     return ENF_OK;
 }
 
