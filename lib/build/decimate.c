@@ -14,6 +14,16 @@
 /// Collapses between two calls of `progress`.
 #define PROGRESS_STEP 1000
 
+/// Portals of a block as a power of two; smaller worlds than MANY_BITS are one block. A block and its cells
+/// take about 8 MB: they stay near the processor while it is on top.
+enum { BLOCK_BITS = 14, MANY_BITS = 16 };
+
+/// Steps of the weight in which the blocks take turns.
+enum { STEPS = 4 };
+
+/// Where a weight is given, the part of it up to which they do: what is left is collapsed in strict order.
+#define UNORDERED_PART 0.75
+
 static const char *const heuristic_names[ENF_HEURISTIC_COUNT] = {"aspect", "aspect-scaled"};
 
 int enf_heuristic_find(const char *name) {
@@ -116,26 +126,74 @@ typedef struct task {
     void *user;
 } task;
 
-static enf_status collapse_all(task *task, enf_decimation *out, enf_error *error) {
-    int64_t cells = task->cell_count;
+/// Collapses one portal and writes it down.
+static enf_status collapse(task *task, int32_t portal, double weight, enf_decimation *out, enf_error *error) {
+    enf_collapse *done = &out->collapses[out->collapse_count++];
+    done->weight = weight;
+    if (!enf_portal_heap_collapse(&task->portals, portal, &done->kept, &done->gone))
+        return enf_fail_memory(error, "the surface of a cell");
+    if (task->progress && out->collapse_count % PROGRESS_STEP == 0 &&
+        !task->progress(task->user, (double)out->collapse_count / (double)task->cell_count))
+        return enf_fail(error, ENF_NO_RESOURCES, "decimate: cancelled");
+    return ENF_OK;
+}
+
+/// Collapses what is lighter than `limit` in a block, the lightest first.
+static enf_status collapse_block(task *task, int32_t block, double limit, enf_decimation *out,
+                                 enf_error *error) {
     for (;;) {
         int32_t portal;
-        enf_status status = enf_portal_heap_top(&task->portals, &portal, &out->next_weight, error);
+        double weight;
+        enf_status status = enf_portal_heap_top(&task->portals, block, &portal, &weight, error);
+        if (status != ENF_OK || portal < 0) return status;
+        weight *= task->scale;
+        if (weight >= limit) return ENF_OK;
+        status = collapse(task, portal, weight, out, error);
+        if (status != ENF_OK) return status;
+    }
+}
+
+/// A large world block by block, in steps of the weight: the order within a step can't matter much, and a
+/// block stays near the processor while all of it is collapsed.
+static enf_status collapse_blocks(task *task, double limit, enf_decimation *out, enf_error *error) {
+    if (!enf_portal_heap_divide(&task->portals, BLOCK_BITS)) return enf_fail_memory(error, "the portals");
+    for (int step = 1; step <= STEPS; ++step)
+        for (int32_t block = 0; block < task->portals.block_count; ++block) {
+            enf_status status = collapse_block(task, block, limit * step / STEPS, out, error);
+            if (status != ENF_OK) return status;
+        }
+    if (!enf_portal_heap_divide(&task->portals, ENF_ONE_BLOCK_BITS))
+        return enf_fail_memory(error, "the portals");
+    return ENF_OK;
+}
+
+static enf_status collapse_all(task *task, enf_decimation *out, enf_error *error) {
+    for (;;) {
+        int32_t portal;
+        enf_status status = enf_portal_heap_top(&task->portals, 0, &portal, &out->next_weight, error);
         if (status != ENF_OK || portal < 0) return status;
         out->next_weight *= task->scale;
+        int64_t cells = task->cell_count - (int64_t)out->collapse_count;
         if (is_done(task->stop, cells, out->next_weight)) return ENF_OK;
-        enf_collapse *collapse = &out->collapses[out->collapse_count++];
-        collapse->weight = out->next_weight;
-        if (!enf_portal_heap_collapse(&task->portals, portal, &collapse->kept, &collapse->gone))
-            return enf_fail_memory(error, "the surface of a cell");
-        --cells;
+        status = collapse(task, portal, out->next_weight, out, error);
+        if (status != ENF_OK) return status;
         if (task->stop->rule == ENF_STOP_AUTO && task->portals.heuristic == ENF_HEURISTIC_ASPECT &&
-            collapse->weight > jump_from)
+            out->next_weight > jump_from)
             return ENF_OK;
-        if (task->progress && out->collapse_count % PROGRESS_STEP == 0 &&
-            !task->progress(task->user, (double)out->collapse_count / (double)task->cell_count))
-            return enf_fail(error, ENF_NO_RESOURCES, "decimate: cancelled");
     }
+}
+
+/// Up to which weight the order of collapses doesn't decide where they stop; 0: it always does.
+static double unordered_limit(const enf_stop *stop, enf_heuristic heuristic) {
+    switch (stop->rule) {
+    case ENF_STOP_WEIGHT:
+        return stop->weight * UNORDERED_PART;
+    case ENF_STOP_AUTO:
+        return heuristic == ENF_HEURISTIC_ASPECT ? jump_over : 0;
+    case ENF_STOP_CELLS:
+        break;
+    }
+    return 0;
 }
 
 enf_status enf_graph_decimate(enf_graph *graph, enf_heuristic heuristic, const enf_stop *stop, double unit,
@@ -155,10 +213,11 @@ enf_status enf_graph_decimate(enf_graph *graph, enf_heuristic heuristic, const e
     if (status != ENF_OK) return status;
     out->cell_of = enf_array_new((size_t)task.cell_count, sizeof *out->cell_of);
     out->collapses = enf_array_new((size_t)task.cell_count, sizeof *out->collapses);
-    if (out->cell_of && out->collapses)
-        status = collapse_all(&task, out, error);
-    else
-        status = enf_fail_memory(error, "the list of collapses");
+    if (!out->cell_of || !out->collapses) status = enf_fail_memory(error, "the list of collapses");
+    double limit = unordered_limit(stop, heuristic);
+    if (status == ENF_OK && limit > 0 && task.portals.portal_count > 1 << MANY_BITS)
+        status = collapse_blocks(&task, limit, out, error);
+    if (status == ENF_OK) status = collapse_all(&task, out, error);
     if (status == ENF_OK && stop->rule == ENF_STOP_AUTO) {
         size_t cut = choose_cut(out->collapses, out->collapse_count, heuristic);
         if (cut < out->collapse_count) out->next_weight = out->collapses[cut].weight;
