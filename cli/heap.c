@@ -22,12 +22,12 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-enum {
-    SPACE = 1 << 30,  ///< bytes set apart
-    MAPPED = 2 << 20, ///< larger arrays are maps of their own where the heap would have to grow for them
-    FREE_AT_END = 2047 << 20, ///< more than the space: freeing does not give it back
-    MOST_MAPS = 1 << 16
-};
+#define SPACE ((uint64_t)2 << 30) ///< bytes set apart
+
+/// Larger arrays are maps of their own where the heap would have to grow for them.
+enum { MAPPED = 2 << 20, MOST_MAPS = 1 << 16 };
+
+enum { NEVER = -1 };
 
 static void prefer_huge_pages(void *data, size_t bytes) {
 #ifdef MADV_HUGEPAGE
@@ -44,9 +44,10 @@ static void prefer_huge_pages(void *data, size_t bytes) {
 void cli_heap_prepare(void) {
     const char *limiter;
     uint64_t part = enf_memory_limit(&limiter) / 4;
-    size_t bytes = part < SPACE ? (size_t)part : SPACE;
-    mallopt(M_TRIM_THRESHOLD, FREE_AT_END);
-    mallopt(M_MMAP_MAX, 0); // from the heap, whatever its size
+    size_t bytes = (size_t)(part < SPACE ? part : SPACE);
+    mallopt(M_ARENA_MAX, 1);          // for all threads
+    mallopt(M_TRIM_THRESHOLD, NEVER); // that would give the space back
+    mallopt(M_MMAP_MAX, 0);           // from the heap, whatever its size
     void *space = malloc(bytes);
     if (space) prefer_huge_pages(space, bytes);
     free(space);

@@ -7,7 +7,7 @@
 #ifndef CLI_HEAP_H
 #define CLI_HEAP_H
 
-/// Sets address space apart, no memory: 1 GiB, or a quarter of what the process may have if that is less.
+/// Sets address space apart, no memory: 2 GiB, or a quarter of what the process may have if that is less.
 /// What does not fit in takes large arrays from the system, and gives them back. Without glibc nothing
 /// happens.
 void cli_heap_prepare(void);

@@ -109,7 +109,7 @@ static void set_counts(enf_yield *yield, place end) {
 static bool reserve(enf_yield *yield, const enf_parts *parts, place end) {
     size_t facets = (size_t)end.facet + (size_t)parts->facet_first[parts->count], cuts = 0;
     for (int32_t i = 0; i < parts->count; i++) cuts += parts->cuts[i];
-    return enf_yield_reserve(yield, facets + 2 * cuts - cuts / 4, 3 * facets + 7 * cuts,
+    return enf_yield_reserve(yield, facets + 2 * cuts - cuts / 4, 3 * facets + 6 * cuts + cuts / 2,
                              (size_t)end.cover + (facets - (size_t)end.facet) / 4 + cuts + cuts / 4);
 }
 
