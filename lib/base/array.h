@@ -15,7 +15,8 @@ bool enf_array_reserve_bytes(void **data, size_t *capacity, size_t wanted, size_
     ((size_t)(wanted) <= (capacity) ||            \
      enf_array_reserve_bytes((void **)&(data), &(capacity), (size_t)(wanted), sizeof *(data)))
 
-/// Gives back the memory behind the first `count` elements of `data`, a typed pointer lvalue that is not null.
+/// Gives back the memory behind the first `count` elements of `data`, a typed pointer lvalue that is not
+/// null.
 #define enf_array_trim(data, count) enf_array_trim_bytes((void **)&(data), (size_t)(count) * sizeof *(data))
 void enf_array_trim_bytes(void **data, size_t bytes);
 

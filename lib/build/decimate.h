@@ -43,10 +43,11 @@ typedef struct enf_decimation {
 
 void enf_decimation_free(enf_decimation *decimation);
 
-/// The lightest portal goes first. Where a graph has more than 65,536 portals and the stop rule is a weight or
-/// `auto` by aspect, that is so within blocks of neighbouring portals only, up to three quarters of the weight
-/// (with `auto` up to the first that it may stop at); what is heavier goes in strict order. The last portals
-/// are as light, the order is the same for any number of threads, and memory is looked at block by block.
+/// The lightest portal goes first. Where a graph has more than 65,536 portals and the stop rule is a weight
+/// or `auto` by aspect, that is so within blocks of neighbouring portals only, up to three quarters of the
+/// weight (with `auto` up to the first that it may stop at); what is heavier goes in strict order. The last
+/// portals are as light, the order is the same for any number of threads, and memory is looked at block by
+/// block.
 ///
 /// Takes the graph: it is empty afterwards, whatever the outcome, so that its memory is free while cells
 /// merge. `unit`: world units per graph unit. aspect-scaled is not scale free, so weights are always computed
