@@ -15,9 +15,12 @@
 /// Fitted over 25 Quake levels and offices of 50 thousand to 10 million polygons; the fourth leans upwards.
 static const double program_bytes = 6e6;         ///< the program itself, and small things
 static const double tetrahedra_per_point = 5.9;  ///< of points on surfaces; 4.8 to 6.3 were seen
-static const double bytes_per_tetrahedron = 560; ///< with all that is kept of points and polygons
+static const double bytes_per_tetrahedron = 545; ///< with all that is kept of points and polygons
 static const double bytes_per_cut = 3500;  ///< per triangle missing: the cells and facets that come of it
 static const double harmless_share = 0.14; ///< missing triangles per tetrahedron where nothing is cut
+/// Gaps between arrays, and ends of arrays that nothing is written to, as a share of the heap; and what lies
+/// in the heap at most: large arrays beyond that are maps of their own (cli/heap.h).
+static const double heap_share = 0.12, heap_bytes = 0x1p31;
 
 enf_memory_counts enf_memory_count(const enf_soup *soup, const enf_mesh *mesh) {
     return (enf_memory_counts){
@@ -61,8 +64,8 @@ double enf_memory_cuts(const enf_memory_counts *counts) {
 uint64_t enf_memory_estimate(const enf_memory_counts *counts) {
     double tetrahedra = (double)counts->tetrahedra;
     if (counts->tetrahedra == 0) tetrahedra = tetrahedra_per_point * (double)counts->points;
-    return (uint64_t)(program_bytes + bytes_per_tetrahedron * tetrahedra +
-                      bytes_per_cut * enf_memory_cuts(counts));
+    double arrays = bytes_per_tetrahedron * tetrahedra + bytes_per_cut * enf_memory_cuts(counts);
+    return (uint64_t)(program_bytes + arrays + heap_share * fmin(arrays, heap_bytes));
 }
 
 /// Planes are numbered with 32 bits: one per face of the tetrahedra, polygon and corner.
