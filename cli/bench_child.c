@@ -42,11 +42,9 @@ void cli_child_extend(double seconds) {
 static void live(void (*work)(void *shared), void *shared, double seconds, uint64_t bytes) {
     const struct rlimit none = {0, 0}, space = {bytes, bytes};
     setrlimit(RLIMIT_CORE, &none);
-    if (bytes > 0) {
-        cli_heap_trim();
-        setrlimit(RLIMIT_AS, &space);
-        cli_heap_prepare();
-    }
+    cli_heap_trim(); // pages that the parent has written to would be copied
+    if (bytes > 0) setrlimit(RLIMIT_AS, &space);
+    cli_heap_prepare();
     signal(SIGXCPU, SIG_DFL);
     signal(SIGALRM, SIG_DFL);
     cli_child_extend(seconds);
