@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef _GNU_SOURCE
-#define _GNU_SOURCE // MADV_HUGEPAGE
-#endif
 #include "cli/heap.h"
 
+#include "base/array.h"
 #include "base/memory.h"
 
 #include <stdint.h>
@@ -19,27 +17,13 @@
 
 #if defined(__GLIBC__) && !defined(OTHER_HEAP)
 #include <malloc.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #define SPACE ((uint64_t)2 << 30) ///< bytes set apart
 
-/// Larger arrays are maps of their own where the heap would have to grow for them.
+/// Larger arrays, bytes, are maps of their own where the heap would have to grow for them; so many at most.
 enum { MAPPED = 2 << 20, MOST_MAPS = 1 << 16 };
 
-enum { NEVER = -1 };
-
-static void prefer_huge_pages(void *data, size_t bytes) {
-#ifdef MADV_HUGEPAGE
-    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), begin = (uintptr_t)data, end = begin + bytes;
-    begin = (begin + page - 1) / page * page;
-    end = end / page * page;
-    if (end > begin) madvise((char *)data + (begin - (uintptr_t)data), end - begin, MADV_HUGEPAGE);
-#else
-    (void)data;
-    (void)bytes;
-#endif
-}
+enum { NEVER = -1 }; ///< as a size: the largest
 
 void cli_heap_prepare(void) {
     const char *limiter;
@@ -48,9 +32,7 @@ void cli_heap_prepare(void) {
     mallopt(M_ARENA_MAX, 1);          // for all threads
     mallopt(M_TRIM_THRESHOLD, NEVER); // that would give the space back
     mallopt(M_MMAP_MAX, 0);           // from the heap, whatever its size
-    void *space = malloc(bytes);
-    if (space) prefer_huge_pages(space, bytes);
-    free(space);
+    free(enf_array_new(bytes, 1));    // which asks for large pages
     mallopt(M_MMAP_MAX, MOST_MAPS);
     mallopt(M_MMAP_THRESHOLD, MAPPED);
 }

@@ -12,8 +12,8 @@
 /// happens.
 void cli_heap_prepare(void);
 
-/// Gives back what is free at the end of the heap: a child that gets a limit of its own begins with this, and
-/// prepares again.
+/// Gives back what is free: a child begins with this and prepares again, so that it copies no pages that its
+/// parent has written to, and keeps to a limit of its own.
 void cli_heap_trim(void);
 
 #endif

@@ -105,12 +105,14 @@ static void set_counts(enf_yield *yield, place end) {
 }
 
 /// The parts' own facets follow: of each that is in a part there will be at least one, and cuts make more. As
-/// many as are usual, and some: memory that nothing is written to takes no time, but arrays that grow do.
+/// many as are usual: arrays that grow are copied, and what nothing is written to takes memory all the same
+/// where pages are large. For one that may cut, up to 1.6 facets and 6.3 corners were seen.
 static bool reserve(enf_yield *yield, const enf_parts *parts, place end) {
-    size_t facets = (size_t)end.facet + (size_t)parts->facet_first[parts->count], cuts = 0;
+    size_t own = (size_t)parts->facet_first[parts->count], cuts = 0;
     for (int32_t i = 0; i < parts->count; i++) cuts += parts->cuts[i];
-    return enf_yield_reserve(yield, facets + 2 * cuts - cuts / 4, 3 * facets + 6 * cuts + cuts / 2,
-                             (size_t)end.cover + (facets - (size_t)end.facet) / 4 + cuts + cuts / 4);
+    size_t facets = (size_t)end.facet + own, made = cuts + cuts * 3 / 4;
+    return enf_yield_reserve(yield, facets + made, 3 * facets + 6 * cuts + cuts / 2,
+                             (size_t)end.cover + own / 4 + cuts + cuts / 4);
 }
 
 bool enf_still_emit(enf_yield *yield, const enf_arrangement *arrangement, const enf_parts *parts,
