@@ -24,13 +24,13 @@ static enf_portal_heap open_heap(const world *w, vertex *vertices) {
 static int32_t lightest_of(enf_portal_heap *portals, double *lightest) {
     int32_t best = -1;
     enf_heap_key least = {INFINITY, INT32_MAX, INT32_MAX};
-    for (int32_t block = 0; block < portals->block_count; ++block) {
+    for (int32_t block = 0; block < portals->heap.block_count; ++block) {
         int32_t portal;
         double weight;
         enf_error error;
         assert_int_equal(enf_portal_heap_top(portals, block, &portal, &weight, &error), ENF_OK);
         if (portal < 0) continue;
-        assert_int_equal(portal >> portals->block_bits, block);
+        assert_int_equal(portal >> portals->heap.block_bits, block);
         const int32_t *cell = portals->portals[portal].cell;
         int32_t a = portals->cells[cell[0]].smallest, b = portals->cells[cell[1]].smallest;
         enf_heap_key key = {weight, a < b ? a : b, a < b ? b : a};
@@ -54,8 +54,8 @@ static void blocks_know_the_lightest_portal(void **state) {
         for (;; ++collapses) {
             if (collapses % 16 == 0) { // back to one block, and to others
                 int bits = collapses % 32 == 0 ? round % 6 : ENF_ONE_BLOCK_BITS;
-                assert_true(enf_portal_heap_divide(&many, bits));
-                assert_int_equal(many.block_count == 1, bits == ENF_ONE_BLOCK_BITS);
+                assert_true(enf_block_heap_divide(&many.heap, bits));
+                assert_int_equal(many.heap.block_count == 1, bits == ENF_ONE_BLOCK_BITS);
             }
             double weight, expected_weight;
             int32_t expected = lightest_of(&one, &expected_weight), portal = lightest_of(&many, &weight);

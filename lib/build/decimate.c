@@ -156,13 +156,13 @@ static enf_status collapse_block(task *task, int32_t block, double limit, enf_de
 /// A large world block by block, in steps of the weight: the order within a step can't matter much, and a
 /// block stays near the processor while all of it is collapsed.
 static enf_status collapse_blocks(task *task, double limit, enf_decimation *out, enf_error *error) {
-    if (!enf_portal_heap_divide(&task->portals, BLOCK_BITS)) return enf_fail_memory(error, "the portals");
+    if (!enf_block_heap_divide(&task->portals.heap, BLOCK_BITS)) return enf_fail_memory(error, "the portals");
     for (int step = 1; step <= STEPS; ++step)
-        for (int32_t block = 0; block < task->portals.block_count; ++block) {
+        for (int32_t block = 0; block < task->portals.heap.block_count; ++block) {
             enf_status status = collapse_block(task, block, limit * step / STEPS, out, error);
             if (status != ENF_OK) return status;
         }
-    if (!enf_portal_heap_divide(&task->portals, ENF_ONE_BLOCK_BITS))
+    if (!enf_block_heap_divide(&task->portals.heap, ENF_ONE_BLOCK_BITS))
         return enf_fail_memory(error, "the portals");
     return ENF_OK;
 }

@@ -11,15 +11,10 @@
 /// most.
 enum { PLUGGED_SIDES = 256, PLUG_SIDES = 24 };
 
-static void free_heaps(enf_heap *heaps, int32_t count) {
-    for (int32_t i = 0; heaps && i < count; ++i) enf_heap_free(&heaps[i]);
-    free(heaps);
-}
-
 void enf_portal_heap_free(enf_portal_heap *portals) {
     enf_surface_free(&portals->surface);
     enf_pair_table_free(&portals->table);
-    free_heaps(portals->heaps, portals->block_count);
+    enf_block_heap_free(&portals->heap);
     free(portals->portals);
     free(portals->piece_next);
     free(portals->cells);
@@ -81,28 +76,14 @@ static double weight_of(const enf_portal_heap *portals, const enf_portal *portal
     return portal->area > 0 ? round_weight(size / portal->area) : INFINITY;
 }
 
-static enf_heap *heap_of(const enf_portal_heap *portals, int32_t number) {
-    return &portals->heaps[number >> portals->block_bits];
-}
-
-/// Its number in the heap of its block.
-static int32_t item_of(const enf_portal_heap *portals, int32_t number) {
-    return number & (int32_t)((UINT32_C(1) << portals->block_bits) - 1);
-}
-
 static double key_weight(const enf_portal_heap *portals, int32_t number) {
-    return enf_heap_key_of(heap_of(portals, number), item_of(portals, number)).weight;
+    return enf_block_heap_key_of(&portals->heap, number).weight;
 }
 
 static void set_key(enf_portal_heap *portals, int32_t number, double weight) {
     const enf_portal *portal = &portals->portals[number];
     int32_t a = portals->cells[portal->cell[0]].smallest, b = portals->cells[portal->cell[1]].smallest;
-    enf_heap_set(heap_of(portals, number), item_of(portals, number),
-                 (enf_heap_key){weight, a < b ? a : b, a < b ? b : a});
-}
-
-static void remove_key(enf_portal_heap *portals, int32_t number) {
-    enf_heap_remove(heap_of(portals, number), item_of(portals, number));
+    enf_block_heap_set(&portals->heap, number, (enf_heap_key){weight, a < b ? a : b, a < b ? b : a});
 }
 
 static bool is_fresh(const enf_portal_heap *portals, const enf_portal *portal) {
@@ -169,51 +150,13 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
     return true;
 }
 
-/// Empty heaps for so many portals.
-static bool make_heaps(enf_portal_heap *portals, int32_t count, int block_bits) {
-    int32_t blocks = (int32_t)(((uint32_t)count + (UINT32_C(1) << block_bits) - 1) >> block_bits);
-    if (blocks == 0) blocks = 1;
-    enf_heap *heaps = enf_array_zeroed((size_t)blocks, sizeof *heaps);
-    bool fine = heaps != NULL;
-    for (int32_t block = 0; fine && block < blocks; ++block) {
-        int32_t first = block << block_bits;
-        uint32_t rest = (uint32_t)(count - first), most = UINT32_C(1) << block_bits;
-        fine = enf_heap_create(&heaps[block], (int32_t)(rest < most ? rest : most));
-    }
-    if (!fine) {
-        free_heaps(heaps, blocks);
-        return false;
-    }
-    portals->heaps = heaps;
-    portals->block_count = blocks;
-    portals->block_bits = block_bits;
-    return true;
-}
-
-bool enf_portal_heap_divide(enf_portal_heap *portals, int block_bits) {
-    enf_heap *before = portals->heaps;
-    int32_t count = portals->block_count;
-    int bits = portals->block_bits;
-    if (!make_heaps(portals, portals->portal_count, block_bits)) return false;
-    for (int32_t block = 0; block < count; ++block) {
-        for (int32_t place = 0; place < before[block].count; ++place) {
-            int32_t number = (block << bits) + before[block].entries[place].item;
-            enf_heap_set(heap_of(portals, number), item_of(portals, number),
-                         before[block].entries[place].key);
-        }
-        enf_heap_free(&before[block]);
-    }
-    free(before);
-    return true;
-}
-
 static bool allocate(enf_portal_heap *portals, size_t cells, size_t pieces, size_t count) {
     portals->portals = enf_array_zeroed(count, sizeof *portals->portals);
     portals->piece_next = enf_array_new(pieces, sizeof *portals->piece_next);
     portals->cells = enf_array_new(cells, sizeof *portals->cells);
     if (!portals->portals || !portals->piece_next || !portals->cells ||
         !enf_pair_table_create(&portals->table, count) ||
-        !make_heaps(portals, (int32_t)count, ENF_ONE_BLOCK_BITS))
+        !enf_block_heap_create(&portals->heap, (int32_t)count))
         return false;
     for (size_t cell = 0; cell < cells; ++cell)
         portals->cells[cell] =
@@ -298,8 +241,7 @@ enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, en
 
 enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t block, int32_t *portal, double *weight,
                                enf_error *error) {
-    while ((*portal = enf_heap_top(&portals->heaps[block])) >= 0) {
-        *portal += block << portals->block_bits;
+    while ((*portal = enf_block_heap_top(&portals->heap, block)) >= 0) {
         enf_portal *top = &portals->portals[*portal];
         double key = key_weight(portals, *portal);
         *weight = key;
@@ -366,7 +308,7 @@ static void move_portals(enf_portal_heap *portals, int32_t kept, int32_t gone) {
             continue;
         }
         unlink_portal(portals, number, !side);
-        remove_key(portals, number);
+        enf_block_heap_remove(&portals->heap, number);
         join_portals(portals, twin, side_of(&portals->portals[twin], kept), portal, side);
     }
     portals->cells[gone].first_portal = -1;
@@ -389,7 +331,7 @@ bool enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t 
     int32_t smallest_a = portals->cells[a].smallest, smallest_b = portals->cells[b].smallest;
     *kept = smallest_a < smallest_b ? smallest_a : smallest_b;
     *gone = smallest_a < smallest_b ? smallest_b : smallest_a;
-    remove_key(portals, number);
+    enf_block_heap_remove(&portals->heap, number);
     enf_pair_table_remove(&portals->table, a, b);
     unlink_portal(portals, number, 0);
     unlink_portal(portals, number, 1);

@@ -9,8 +9,8 @@
 #ifndef ENF_BUILD_PORTAL_HEAP_H
 #define ENF_BUILD_PORTAL_HEAP_H
 
+#include "build/block_heap.h"
 #include "build/decimate.h"
-#include "build/heap.h"
 #include "build/pair_table.h"
 #include "build/surface.h"
 
@@ -34,9 +34,6 @@ typedef struct enf_portal {
     double sum[3];        ///< of the area vectors, from cell 0 to cell 1
 } enf_portal;
 
-/// All portals in one block.
-#define ENF_ONE_BLOCK_BITS 31
-
 /// What the portals of a cell have in common.
 typedef struct enf_portal_cell {
     int32_t first_portal; ///< the list of its portals, or -1
@@ -52,22 +49,16 @@ typedef struct enf_portal_heap {
     enf_portal *portals;
     int32_t *piece_next;  ///< for each piece the next one of the same portal, or -1
     enf_pair_table table; ///< two cells -> their portal
-    int block_bits;       ///< so many portals are a block, as a power of two
-    int32_t block_count;
-    enf_heap *heaps; ///< for each block
+    enf_block_heap heap;  ///< which is the lightest; one block unless the caller divides it
     enf_portal_cell *cells;
     size_t evaluations; ///< weights computed
 } enf_portal_heap;
 
-/// Takes the graph: it is empty afterwards, whatever the outcome. All portals are one block.
+/// Takes the graph: it is empty afterwards, whatever the outcome. Portals are numbered as their cells
+/// are, along a curve through space.
 enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, enf_heuristic heuristic,
                                   enf_error *error);
 void enf_portal_heap_free(enf_portal_heap *portals);
-
-/// Makes blocks of 2^block_bits portals, with a heap each. Portals are numbered as their cells are, along a
-/// curve through space, so a block is a part of space. False, with the blocks as they were, when there is no
-/// memory.
-bool enf_portal_heap_divide(enf_portal_heap *portals, int block_bits);
 
 /// The lightest portal of a block and its true weight, in graph units; *portal is -1 when none is left.
 enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t block, int32_t *portal, double *weight,
