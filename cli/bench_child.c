@@ -42,9 +42,11 @@ void cli_child_extend(double seconds) {
 static void live(void (*work)(void *shared), void *shared, double seconds, uint64_t bytes) {
     const struct rlimit none = {0, 0}, space = {bytes, bytes};
     setrlimit(RLIMIT_CORE, &none);
-    cli_heap_trim(); // pages that the parent has written to would be copied
-    if (bytes > 0) setrlimit(RLIMIT_AS, &space);
-    cli_heap_prepare();
+    if (bytes > 0) {
+        cli_heap_trim();
+        setrlimit(RLIMIT_AS, &space);
+        cli_heap_prepare();
+    }
     signal(SIGXCPU, SIG_DFL);
     signal(SIGALRM, SIG_DFL);
     cli_child_extend(seconds);
@@ -56,6 +58,8 @@ enf_status cli_child_run(void (*work)(void *shared), void *shared, double second
                          cli_child *child, enf_error *error) {
     memset(child, 0, sizeof *child);
     fflush(NULL);
+    cli_heap_trim(); // what is free here would be copied there, and count as the child's
+    cli_heap_prepare();
     pid_t number = fork();
     if (number == 0) live(work, shared, seconds, bytes);
     int outcome = 0;

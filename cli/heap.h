@@ -12,8 +12,8 @@
 /// happens.
 void cli_heap_prepare(void);
 
-/// Gives back what is free: a child begins with this and prepares again, so that it copies no pages that its
-/// parent has written to, and keeps to a limit of its own.
+/// Gives back what is free, and the space: before another process is made of this one, or a limit is set. To
+/// be prepared again after it.
 void cli_heap_trim(void);
 
 #endif
