@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How time and memory grow with the world, and what a second thread gains. Every run is a process of its own;
-// runs with one thread and with several take turns, so that a busy machine disturbs both alike.
+// How time and memory grow with the world, and what a second thread gains. Every run is a process of its own.
+// A machine that others share is faster at some times than at others, for seconds or minutes. So the sizes
+// take turns, round after round; in a round a small world is compiled again and again for as long as a large
+// one takes, so that its median, like the large one's, is of fast and slow moments; and runs with one thread
+// and with several alternate.
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE // asprintf
 #endif
+#include "base/array.h"
 #include "base/timer.h"
 #include "build/write.h"
 #include "cli/bench.h"
 #include "cli/bench_child.h"
+#include "cli/bench_folder.h"
 #include "cli/bench_world.h"
 #include "cli/cli.h"
 #include "cli/job.h"
@@ -84,14 +89,22 @@ typedef struct run {
     enf_error error;
 } run;
 
+/// What all runs of one world with so many threads have said.
+typedef struct series {
+    double (*columns)[MEASURED]; ///< of each run
+    size_t count, capacity;
+} series;
+
 typedef struct row {
     const struct world *world;
+    char *file, *output; ///< the world, while it is there; what it is compiled to
+    series one, several; ///< runs with one thread and with several
     double column[COLUMN_COUNT];
 } row;
 
 typedef struct table {
     int threads, runs;
-    double largest;
+    double largest, seconds;
     const char *pattern; ///< glob for families; null: all
     run *shared;
     row rows[WORLD_COUNT];
@@ -154,39 +167,63 @@ static enf_status run_child(run *run, const char *world, const char *output, int
 
 // ---------------------------------------------------------------------------------------------- one world
 
-static void take_least(double *least, const double *values, int count) {
-    for (int i = 0; i < count; i++) least[i] = fmin(least[i], values[i]);
-}
-
-/// The runs of one world, with one thread and with several. Whatever disturbs a run makes it longer, so the
-/// least of each column counts.
-static enf_status measure_files(const table *table, const char *world, const char *output, row *row,
-                                enf_error *error) {
-    const double *column = table->shared->column;
-    enf_status status = ENF_OK;
-    for (int c = 0; c < COLUMN_COUNT; c++) row->column[c] = INFINITY;
-    for (int i = 0; i < table->runs && !status; i++) {
-        status = run_child(table->shared, world, output, 1, error);
-        take_least(row->column, column, MEASURED);
-        if (!status && table->threads > 1)
-            status = run_child(table->shared, world, output, table->threads, error);
-        take_least(&row->column[CLOCK_THREADS], &column[CLOCK], 2);
-    }
-    row->column[SPLIT_GAIN] = row->column[SPLIT_CLOCK] / row->column[SPLIT_CLOCK_THREADS];
+static enf_status add_run(run *run, series *series, const row *row, int threads, enf_error *error) {
+    if (!enf_array_reserve(series->columns, series->capacity, series->count + 1))
+        return enf_fail_memory(error, "a run");
+    enf_status status = run_child(run, row->file, row->output, threads, error);
+    if (!status) memcpy(series->columns[series->count++], run->column, sizeof run->column);
     return status;
 }
 
-static enf_status measure_world(const table *table, row *row, enf_error *error) {
-    char *world = NULL, *output = NULL;
-    enf_status status = cli_world_make(row->world->family, row->world->settings, SETTINGS, &world, error);
-    if (!status && asprintf(&output, "%s.enf", world) < 0) {
-        output = NULL;
+/// A round of one world: runs until `seconds` have passed, one at least.
+static enf_status run_round(const table *table, row *row, enf_error *error) {
+    const double started = enf_timer_now();
+    enf_status status = ENF_OK;
+    do {
+        status = add_run(table->shared, &row->one, row, 1, error);
+        if (!status && table->threads > 1)
+            status = add_run(table->shared, &row->several, row, table->threads, error);
+    } while (!status && enf_timer_now() - started < table->seconds);
+    return status;
+}
+
+static bool find_median(const series *series, int column, double *median) {
+    double *values = enf_array_new(series->count, sizeof *values);
+    if (!values) return false;
+    for (size_t i = 0; i < series->count; i++) values[i] = series->columns[i][column];
+    *median = cli_median(values, series->count);
+    free(values);
+    return true;
+}
+
+static enf_status take_medians(const table *table, row *row, enf_error *error) {
+    bool found = true;
+    for (int c = 0; c < MEASURED; c++) found = found && find_median(&row->one, c, &row->column[c]);
+    double *of_several = &row->column[CLOCK_THREADS];
+    of_several[0] = of_several[1] = row->column[SPLIT_GAIN] = NAN;
+    if (table->threads > 1) {
+        found = found && find_median(&row->several, CLOCK, &of_several[0]) &&
+                find_median(&row->several, SPLIT_CLOCK, &of_several[1]);
+        row->column[SPLIT_GAIN] = row->column[SPLIT_CLOCK] / row->column[SPLIT_CLOCK_THREADS];
+    }
+    return found ? ENF_OK : enf_fail_memory(error, "a median");
+}
+
+static enf_status make_row(row *row, const struct world *world, enf_error *error) {
+    row->world = world;
+    enf_status status = cli_world_make(world->family, world->settings, SETTINGS, &row->file, error);
+    if (!status && asprintf(&row->output, "%s.enf", row->file) < 0) {
+        row->output = NULL;
         status = enf_fail_memory(error, "a path");
     }
-    if (!status) status = measure_files(table, world, output, row, error);
-    cli_world_remove(world);
-    free(output);
     return status;
+}
+
+static void free_row(row *row) {
+    cli_world_remove(row->file);
+    free(row->output);
+    free(row->one.columns);
+    free(row->several.columns);
 }
 
 // ---------------------------------------------------------------------------------------------- printing
@@ -259,21 +296,10 @@ static bool is_wanted(const table *table, const struct world *world) {
            (!table->pattern || fnmatch(table->pattern, world->family, 0) == 0);
 }
 
-static enf_status run_worlds(table *table, enf_error *error) {
-    table->shared = cli_shared_new(sizeof *table->shared);
-    if (!table->shared) return enf_fail_memory(error, "a row");
+static enf_status make_worlds(table *table, enf_error *error) {
     enf_status status = ENF_OK;
-    for (int i = 0; i < WORLD_COUNT && !status; i++) {
-        if (!is_wanted(table, &worlds[i])) continue;
-        row *row = &table->rows[table->count];
-        row->world = &worlds[i];
-        if (table->count == 0) print_head();
-        status = measure_world(table, row, error);
-        if (status) break;
-        print_row(row);
-        table->count++;
-    }
-    cli_shared_free(table->shared, sizeof *table->shared);
+    for (int i = 0; i < WORLD_COUNT && !status; i++)
+        if (is_wanted(table, &worlds[i])) status = make_row(&table->rows[table->count++], &worlds[i], error);
     if (!status && table->count == 0)
         return enf_fail(
             error, ENF_BAD_USAGE,
@@ -281,36 +307,55 @@ static enf_status run_worlds(table *table, enf_error *error) {
     return status;
 }
 
+static enf_status run_worlds(table *table, enf_error *error) {
+    enf_status status = make_worlds(table, error);
+    for (int round = 0; round < table->runs && !status; round++)
+        for (int i = 0; i < table->count && !status; i++) status = run_round(table, &table->rows[i], error);
+    if (!status) print_head();
+    for (int i = 0; i < table->count && !status; i++) {
+        status = take_medians(table, &table->rows[i], error);
+        if (!status) print_row(&table->rows[i]);
+    }
+    return status;
+}
+
+static enf_status measure_growth(table *table, enf_error *error) {
+    table->shared = cli_shared_new(sizeof *table->shared);
+    enf_status status = table->shared ? run_worlds(table, error) : enf_fail_memory(error, "a row");
+    if (!status) judge(table);
+    for (int i = 0; i < table->count; i++) free_row(&table->rows[i]);
+    if (table->shared) cli_shared_free(table->shared, sizeof *table->shared);
+    return status;
+}
+
 int cli_bench_growth(int argc, char **argv) {
-    table table = {.threads = 2, .runs = 1, .largest = million};
+    table table = {.threads = 2, .runs = 3, .largest = million, .seconds = 5};
     cli_option options[] = {
         {"--threads", 0, CLI_COUNT, &table.threads, "N",
          "compare one thread with so many; default 2, 1 for none", NULL, false},
-        {"--runs", 0, CLI_COUNT, &table.runs, "N", "the least of so many runs; default 1", NULL, false},
+        {"--runs", 0, CLI_COUNT, &table.runs, "N", "so many rounds; default 3", NULL, false},
+        {"--seconds", 0, CLI_LENGTH, &table.seconds, "S",
+         "a round compiles each world again and again for so long; default 5", NULL, false},
         {"--largest", 0, CLI_LENGTH, &table.largest, "N", "only worlds of about N polygons or fewer", NULL,
          false},
         {"--worlds", 0, CLI_TEXT, &table.pattern, "GLOB", "only these: office, caverns", NULL, false},
         {0}};
     const cli_syntax syntax = {
         .command = "enfilade bench growth",
-        .usage = "[--threads N] [--runs N] [--largest N] [--worlds GLOB]",
+        .usage = "[--threads N] [--runs N] [--seconds S] [--largest N] [--worlds GLOB]",
         .summary =
             "Offices and caverns of about 10^4, 3*10^4, 10^5, 3*10^5 and 10^6 polygons, read, compiled and\n"
-            "written, on one thread and (columns with _N) on several. Stages and total_s are processor "
-            "seconds\n"
-            "of one thread, clock_s and split_clock_s go by the clock; exact_share is of the predicates "
-            "that\n"
-            "only whole numbers could decide. CSV; then, in words, how time grows with the polygons, "
-            "and\n"
-            "whether the bars are met.",
+            "written, on one thread and (columns with _N) on several: medians of all runs of all rounds.\n"
+            "Stages and total_s are processor seconds of one thread, clock_s and split_clock_s go by the\n"
+            "clock; exact_share is of the predicates that only whole numbers could decide. CSV, at the "
+            "end;\n"
+            "then, in words, how time grows with the polygons, and whether the bars are met.",
         .options = options};
     cli_texts operands = {0};
     enf_error error = {0};
     int status = cli_parse(&syntax, argc, argv, &operands);
     if (status < 0) {
-        enf_status failed = run_worlds(&table, &error);
-        if (!failed) judge(&table);
-        status = failed ? cli_fail(&error) : ENF_OK;
+        status = measure_growth(&table, &error) ? cli_fail(&error) : ENF_OK;
         if (cli_finish_output()) status = ENF_NO_RESOURCES;
     }
     free(operands.items);
