@@ -3,7 +3,7 @@
 // A machine that others share is faster at some times than at others, for seconds or minutes. So the sizes
 // take turns, round after round; in a round a small world is compiled again and again for as long as a large
 // one takes, so that its median, like the large one's, is of fast and slow moments; and runs with one thread
-// and with several alternate.
+// and with several alternate. The memory that a run will take is touched before it.
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE // asprintf
 #endif
@@ -25,6 +25,7 @@
 #include <unistd.h>
 
 enum { CHILD_SECONDS = 7200, SETTINGS = 3 };
+enum { POLYGON_BYTES = 4096 }; ///< more than a compile and its file take of the machine's memory
 
 /// The bars.
 static const double exponent_most = 1.1, million = 1e6, million_seconds = 60, gain_least = 1.6;
@@ -170,6 +171,7 @@ static enf_status run_child(run *run, const char *world, const char *output, int
 static enf_status add_run(run *run, series *series, const row *row, int threads, enf_error *error) {
     if (!enf_array_reserve(series->columns, series->capacity, series->count + 1))
         return enf_fail_memory(error, "a run");
+    cli_memory_touch((uint64_t)(row->world->polygons * POLYGON_BYTES));
     enf_status status = run_child(run, row->file, row->output, threads, error);
     if (!status) memcpy(series->columns[series->count++], run->column, sizeof run->column);
     return status;
