@@ -25,7 +25,7 @@
 #include <unistd.h>
 
 enum { CHILD_SECONDS = 7200, SETTINGS = 3 };
-enum { POLYGON_BYTES = 4096 }; ///< more than a compile and its file take of the machine's memory
+enum { POLYGON_BYTES = 4096 }; ///< about what a compile and its file take of the machine's memory
 
 /// The bars.
 static const double exponent_most = 1.1, million = 1e6, million_seconds = 60, gain_least = 1.6;
