@@ -48,7 +48,11 @@ typedef struct flood {
     const int32_t *order; ///< polygons by plane
     place *places;        ///< per tetrahedron
     flood_block *blocks;
+    int32_t block_count;
     flooder *flooders;
+    enf_candidates *sorted;
+    int32_t *hit_first; ///< the arrangement's, while they are sorted
+    enf_hit *hits;
 } flood;
 
 void enf_candidates_free(enf_candidates *candidates) {
@@ -265,8 +269,10 @@ static void flood_job(void *user, int32_t index, int thread) {
     flooder *w = &all->flooders[thread];
     size_t end = ((size_t)index + 1) * BLOCK;
     if (end > all->arrangement->mesh->polygon_count) end = all->arrangement->mesh->polygon_count;
+    flood_block block = {0}; // here: threads that write close to each other wait for each other
     for (size_t i = (size_t)index * BLOCK; i < end && !w->failed; i++)
-        take_polygon(w, &all->blocks[index], all, all->order[w->rank = (int32_t)i]);
+        take_polygon(w, &block, all, all->order[w->rank = (int32_t)i]);
+    all->blocks[index] = block;
 }
 
 /// Polygons sorted by plane (free() it), or null without memory.
@@ -304,44 +310,85 @@ static void make_places(void *user, int32_t block, int thread) {
     }
 }
 
-/// Candidates by tetrahedron, in the order of the blocks.
-static bool join_candidates(enf_candidates *candidates, size_t tets, const flood_block *blocks,
-                            int32_t block_count) {
-    size_t total = 0;
-    for (int32_t b = 0; b < block_count; b++) total += blocks[b].count;
-    if (total > INT32_MAX) return false;
-    int32_t *next = candidates->offset = enf_array_zeroed(tets + 2, sizeof *next);
-    candidates->candidates = enf_array_new(total, sizeof *candidates->candidates);
-    if (!next || !candidates->candidates) return false;
-    for (int32_t b = 0; b < block_count; b++) {
-        for (size_t i = 0; i < blocks[b].count; i++) next[blocks[b].found[i].tetrahedron + 2]++;
-    }
-    for (size_t t = 0; t < tets; t++) next[t + 2] += next[t + 1];
-    for (int32_t b = 0; b < block_count; b++) {
-        for (size_t i = 0; i < blocks[b].count; i++) {
-            const found *f = &blocks[b].found[i];
-            candidates->candidates[next[f->tetrahedron + 1]++] = f->candidate;
+enum { SHARES = 8 }; ///< in which what was found is sorted
+
+/// Puts what a share's tetrahedra have in order: that of the blocks.
+static void sort_candidates(const flood *all, int32_t begin, int32_t end) {
+    int32_t *first = all->sorted->offset, before = 0;
+    memset(first + begin, 0, (size_t)(end - begin) * sizeof *first);
+    for (int32_t b = 0; b < all->block_count; b++) {
+        const flood_block *block = &all->blocks[b];
+        for (size_t i = 0; i < block->count; i++) {
+            int32_t t = block->found[i].tetrahedron;
+            before += t < begin;
+            if (t >= begin && t < end) first[t]++;
         }
     }
-    return true;
+    for (int32_t t = begin; t < end; t++)
+        first[t] = before += first[t]; // the end of its own; from there back
+    for (int32_t b = all->block_count; b-- > 0;) {
+        const flood_block *block = &all->blocks[b];
+        for (size_t i = block->count; i-- > 0;) {
+            int32_t t = block->found[i].tetrahedron;
+            if (t >= begin && t < end) all->sorted->candidates[--first[t]] = block->found[i].candidate;
+        }
+    }
 }
 
-/// Hits by facet, in the order of the blocks.
-static bool join_hits(enf_arrangement *arrangement, const flood_block *blocks, int32_t block_count) {
-    size_t facets = (size_t)arrangement->tets.facet_count, total = 0;
-    for (int32_t b = 0; b < block_count; b++) total += blocks[b].hit_count;
-    if (total > INT32_MAX) return false;
-    int32_t *next = arrangement->hit_first = enf_array_zeroed(facets + 2, sizeof *next);
-    arrangement->hits = enf_array_new(total, sizeof *arrangement->hits);
-    if (!next || !arrangement->hits) return false;
-    for (int32_t b = 0; b < block_count; b++) {
-        for (size_t i = 0; i < blocks[b].hit_count; i++) next[blocks[b].hits[i].source + 2]++;
+/// The same for facets and hits.
+static void sort_hits(const flood *all, int32_t begin, int32_t end) {
+    int32_t *first = all->hit_first, before = 0;
+    memset(first + begin, 0, (size_t)(end - begin) * sizeof *first);
+    for (int32_t b = 0; b < all->block_count; b++) {
+        const flood_block *block = &all->blocks[b];
+        for (size_t i = 0; i < block->hit_count; i++) {
+            int32_t facet = block->hits[i].source;
+            before += facet < begin;
+            if (facet >= begin && facet < end) first[facet]++;
+        }
     }
-    for (size_t f = 0; f < facets; f++) next[f + 2] += next[f + 1];
-    for (int32_t b = 0; b < block_count; b++) {
-        for (size_t i = 0; i < blocks[b].hit_count; i++)
-            arrangement->hits[next[blocks[b].hits[i].source + 1]++] = blocks[b].hits[i];
+    for (int32_t f = begin; f < end; f++) first[f] = before += first[f];
+    for (int32_t b = all->block_count; b-- > 0;) {
+        const flood_block *block = &all->blocks[b];
+        for (size_t i = block->hit_count; i-- > 0;) {
+            int32_t facet = block->hits[i].source;
+            if (facet >= begin && facet < end) all->hits[--first[facet]] = block->hits[i];
+        }
     }
+}
+
+static int32_t share_begin(int32_t count, int32_t share) {
+    return (int32_t)((int64_t)count * share / SHARES);
+}
+
+/// One share of the tetrahedra, and one of the facets.
+static void sort_share(void *user, int32_t share, int thread) {
+    (void)thread;
+    const flood *all = user;
+    const enf_tet_mesh *tets = &all->arrangement->tets;
+    sort_hits(all, share_begin(tets->facet_count, share), share_begin(tets->facet_count, share + 1));
+    sort_candidates(all, share_begin(tets->count, share), share_begin(tets->count, share + 1));
+}
+
+/// Candidates by tetrahedron and hits by facet. False without memory.
+static bool sort_found(flood *all, enf_arrangement *arrangement, int threads) {
+    const enf_crew crew = {.threads = threads};
+    enf_candidates *candidates = all->sorted;
+    size_t tets = (size_t)arrangement->tets.count, facets = (size_t)arrangement->tets.facet_count;
+    size_t total = 0, hits = 0;
+    for (int32_t b = 0; b < all->block_count; b++) {
+        total += all->blocks[b].count;
+        hits += all->blocks[b].hit_count;
+    }
+    if (total > INT32_MAX || hits > INT32_MAX) return false;
+    candidates->offset = enf_array_new(tets + 1, sizeof *candidates->offset);
+    candidates->candidates = enf_array_new(total, sizeof *candidates->candidates);
+    all->hit_first = arrangement->hit_first = enf_array_new(facets + 1, sizeof *arrangement->hit_first);
+    all->hits = arrangement->hits = enf_array_new(hits, sizeof *arrangement->hits);
+    if (!candidates->offset || !candidates->candidates || !all->hit_first || !all->hits) return false;
+    candidates->offset[tets] = (int32_t)total;
+    all->hit_first[facets] = (int32_t)hits;
+    enf_parallel_for(&crew, SHARES, sort_share, all);
     return true;
 }
 
@@ -370,6 +417,8 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
     const int32_t *order = candidates->order = sort_by_plane(arrangement);
     flood all = {.arrangement = arrangement,
                  .order = order,
+                 .block_count = block_count,
+                 .sorted = candidates,
                  .places = enf_array_new((size_t)arrangement->tets.count, sizeof *all.places),
                  .blocks = enf_array_zeroed((size_t)block_count, sizeof *all.blocks),
                  .flooders = enf_array_zeroed((size_t)threads, sizeof *all.flooders)};
@@ -380,9 +429,7 @@ bool enf_candidates_find(enf_candidates *candidates, enf_arrangement *arrangemen
         enf_parallel_for(&unwatched, arrangement->tets.count / PLACES + 1, make_places, &all);
         *stopped = !enf_parallel_for(crew, block_count, flood_job, &all);
         for (int w = 0; w < threads; w++) good = good && !all.flooders[w].failed;
-        size_t tets = (size_t)arrangement->tets.count;
-        good = good && !*stopped && join_candidates(candidates, tets, all.blocks, block_count) &&
-               join_hits(arrangement, all.blocks, block_count);
+        good = good && !*stopped && sort_found(&all, arrangement, threads);
     }
     for (int w = 0; all.flooders && w < threads; w++) end_flooder(&all.flooders[w], arrangement);
     for (int32_t b = 0; all.blocks && b < block_count; b++) {

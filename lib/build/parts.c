@@ -14,15 +14,22 @@ enum { PART_WORK = 1 << 15 };
 
 enum { BLOCK = 1 << 14 }; ///< facets a job
 
-/// While the parts are made.
+/// While the parts are made. Most tetrahedra and facets of a finely drawn world are in none: those that are
+/// get numbers of their own, in the same order.
 typedef struct divider {
     const enf_arrangement *arrangement;
     const enf_candidates *candidates;
     enf_parts *parts;
-    int32_t *group; ///< per tetrahedron: see base/sets.h
-    int32_t *work;  ///< per tetrahedron: of the group that it stands for, and of facets that are left to it
-    int32_t *at;    ///< per tetrahedron: the part of that work
-    int32_t *part;  ///< per tetrahedron: its own part
+    int32_t *entered; ///< the tetrahedra that polygons enter
+    int32_t entered_count;
+    bool have_long; ///< there are polygons with many edges; mostly there are none, and none need be looked up
+    int32_t *facets; ///< the marked facets
+    int32_t facet_count;
+    int32_t *block_first; ///< per block of facets, and one more: the number of its first marked facet
+    int32_t *group;       ///< per tetrahedron that is entered: see base/sets.h
+    int32_t *work;        ///< per tetrahedron that is entered: of the group that it stands for
+    int32_t *group_part; ///< per tetrahedron that is entered: the part of the group that it stands for, or -1
+    int32_t *facet_part; ///< per marked facet
 } divider;
 
 void enf_parts_free(enf_parts *parts) {
@@ -45,111 +52,189 @@ enf_tet_part enf_parts_at(const enf_parts *parts, int32_t part) {
                           .cell_of = parts->cell_of};
 }
 
+/// Polygons that may cut a tetrahedron.
 static int32_t cuts_of(const divider *d, int32_t t) {
     return t < 0 ? 0 : d->candidates->offset[t + 1] - d->candidates->offset[t];
+}
+
+/// Offsets from numbers per part or block, which are at offset[index + 1].
+static void add_up(int32_t *offset, int32_t count) {
+    for (int32_t i = 0; i < count; i++) offset[i + 1] += offset[i];
+}
+
+// ---------------------------------------------------------------------------------------------- what is in
+// parts
+
+/// Numbers the tetrahedra that polygons enter. False without memory.
+static bool list_entered(divider *d) {
+    int32_t tets = d->arrangement->tets.count, count = 0;
+    int32_t *number = d->parts->cell_of = enf_array_new((size_t)tets, sizeof *number);
+    if (!number) return false;
+    for (int32_t t = 0; t < tets; t++) number[t] = cuts_of(d, t) ? count++ : -1;
+    d->entered = enf_array_new((size_t)count, sizeof *d->entered);
+    if (!d->entered) return false;
+    d->entered_count = count;
+    for (int32_t t = 0; t < tets; t++) {
+        if (number[t] >= 0) d->entered[number[t]] = t;
+    }
+    return true;
+}
+
+/// Does the polygon have so many edges that it is not known which are near?
+static bool is_long(const divider *d, size_t polygon) {
+    const int64_t *corner = d->arrangement->mesh->polygon_corner;
+    return corner[polygon + 1] - corner[polygon] > ENF_LINES_FEW;
+}
+
+static bool have_long(const divider *d) {
+    for (size_t p = 0; p < d->arrangement->mesh->polygon_count; p++) {
+        if (is_long(d, p)) return true;
+    }
+    return false;
 }
 
 /// A polygon on the facet that may end there, or has so many edges that this is not known.
 static bool has_edge(const divider *d, int32_t facet) {
     const enf_arrangement *arrangement = d->arrangement;
-    const int64_t *corner = arrangement->mesh->polygon_corner;
     for (int32_t i = arrangement->hit_first[facet]; i < arrangement->hit_first[facet + 1]; i++) {
         const enf_hit *hit = &arrangement->hits[i];
-        if (hit->lines || corner[hit->polygon + 1] - corner[hit->polygon] > ENF_LINES_FEW) return true;
+        if (hit->lines || (d->have_long && is_long(d, (size_t)hit->polygon))) return true;
     }
     return false;
 }
 
-/// The tetrahedron whose group a facet goes with.
-static int32_t owner(const divider *d, const int32_t sides[2]) {
-    if (cuts_of(d, sides[0])) return sides[0];
-    return cuts_of(d, sides[1]) || sides[0] < 0 ? sides[1] : sides[0];
+static int32_t block_end(const divider *d, int32_t block) {
+    int32_t begin = block * BLOCK, left = d->arrangement->tets.facet_count - begin;
+    return begin + (left < BLOCK ? left : BLOCK);
 }
 
-/// Marks the facets of a block.
+/// Marks the facets of a block, and counts them.
 static void mark_block(void *user, int32_t block, int thread) {
     (void)thread;
     const divider *d = user;
-    const enf_tet_mesh *tets = &d->arrangement->tets;
-    int32_t begin = block * BLOCK, left = tets->facet_count - begin,
-            end = begin + (left < BLOCK ? left : BLOCK);
-    for (int32_t f = begin; f < end; f++) {
-        const int32_t *sides = tets->facet_sides[f];
-        d->parts->marked[f] = cuts_of(d, sides[0]) || cuts_of(d, sides[1]) || has_edge(d, f);
+    int32_t count = 0; // here: threads that write close to each other wait for each other
+    for (int32_t f = block * BLOCK; f < block_end(d, block); f++) {
+        const int32_t *sides = d->arrangement->tets.facet_sides[f];
+        bool marked = cuts_of(d, sides[0]) || cuts_of(d, sides[1]) || has_edge(d, f);
+        d->parts->marked[f] = marked;
+        count += marked;
+    }
+    d->block_first[block + 1] = count;
+}
+
+static void list_block(void *user, int32_t block, int thread) {
+    (void)thread;
+    const divider *d = user;
+    int32_t number = d->block_first[block];
+    for (int32_t f = block * BLOCK; f < block_end(d, block); f++) {
+        if (d->parts->marked[f]) d->facets[number++] = f;
     }
 }
 
-/// Groups tetrahedra and adds up their work.
-static void group_all(const divider *d) {
-    const enf_tet_mesh *tets = &d->arrangement->tets;
-    enf_sets_start(d->group, tets->count);
-    for (int32_t f = 0; f < tets->facet_count; f++) {
-        if (!d->parts->marked[f]) continue;
-        const int32_t *sides = tets->facet_sides[f];
-        if (cuts_of(d, sides[0]) && cuts_of(d, sides[1])) enf_sets_unite(d->group, sides[0], sides[1]);
-        d->work[owner(d, sides)]++;
-    }
-    for (int32_t t = tets->count - 1; t >= 0; t--) { // the one that stands for its group comes last
-        d->work[t] += cuts_of(d, t);
-        int32_t root = enf_sets_find(d->group, t);
-        if (root == t) continue;
-        d->work[root] += d->work[t];
-        d->work[t] = 0;
-    }
+/// Marks facets and lists them. False without memory.
+static bool list_marked(divider *d, const enf_crew *crew) {
+    int32_t facets = d->arrangement->tets.facet_count, blocks = facets / BLOCK + 1;
+    d->parts->marked = enf_array_new((size_t)facets, sizeof *d->parts->marked);
+    d->block_first = enf_array_zeroed((size_t)blocks + 1, sizeof *d->block_first);
+    if (!d->parts->marked || !d->block_first) return false;
+    d->have_long = have_long(d);
+    enf_parallel_for(crew, blocks, mark_block, d);
+    add_up(d->block_first, blocks);
+    d->facet_count = d->block_first[blocks];
+    d->facets = enf_array_new((size_t)d->facet_count, sizeof *d->facets);
+    if (!d->facets) return false;
+    enf_parallel_for(crew, blocks, list_block, d);
+    return true;
 }
 
-/// Puts what follows each other into parts. Returns the part with the most work.
-static int32_t fill_parts(const divider *d) {
+// ---------------------------------------------------------------------------------------------- which part
+
+/// The tetrahedron whose group a marked facet goes with, as a number among those that are entered, or -1: it
+/// goes alone.
+static int32_t owner(const divider *d, int32_t facet) {
+    const int32_t *sides = d->arrangement->tets.facet_sides[facet], *number = d->parts->cell_of;
+    int32_t first = sides[0] < 0 ? -1 : number[sides[0]];
+    return first >= 0 || sides[1] < 0 ? first : number[sides[1]];
+}
+
+/// Groups tetrahedra and adds up their work. False without memory.
+static bool group_all(divider *d) {
+    int32_t count = d->entered_count;
+    int32_t *group = d->group = enf_array_new((size_t)count, sizeof *group);
+    int32_t *work = d->work = enf_array_zeroed((size_t)count, sizeof *work);
+    if (!group || !work) return false;
+    enf_sets_start(group, count);
+    for (int32_t i = 0; i < d->facet_count; i++) {
+        const int32_t *sides = d->arrangement->tets.facet_sides[d->facets[i]], *number = d->parts->cell_of;
+        int32_t one = owner(d, d->facets[i]);
+        if (one < 0) continue;
+        work[one]++;
+        if (cuts_of(d, sides[0]) && cuts_of(d, sides[1]))
+            enf_sets_unite(group, number[sides[0]], number[sides[1]]);
+    }
+    for (int32_t i = count - 1; i >= 0; i--) { // the one that stands for its group comes last
+        work[i] += cuts_of(d, d->entered[i]);
+        int32_t root = enf_sets_find(group, i);
+        if (root != i) work[root] += work[i];
+    }
+    return true;
+}
+
+/// Exchanges the numbers of a part and of the first.
+static void put_first(int32_t *parts, int32_t count, int32_t part) {
+    for (int32_t i = 0; i < count; i++) parts[i] = parts[i] == part ? 0 : parts[i] == 0 ? part : parts[i];
+}
+
+/// Puts groups, and facets that go alone, into parts: those that follow each other into the same. The part
+/// with the most work comes first. False without memory.
+static bool fill_parts(divider *d) {
+    int32_t *group_part = d->group_part = enf_array_new((size_t)d->entered_count, sizeof *group_part);
+    int32_t *facet_part = d->facet_part = enf_array_new((size_t)d->facet_count, sizeof *facet_part);
     int64_t work = 0, most = -1;
     int32_t part = 0, heaviest = 0;
-    for (int32_t t = 0; t < d->arrangement->tets.count; t++) {
+    if (!group_part || !facet_part) return false;
+    memset(group_part, 0xff, (size_t)d->entered_count * sizeof *group_part); // -1
+    for (int32_t i = 0; i < d->facet_count; i++) {
+        int32_t one = owner(d, d->facets[i]), root = one < 0 ? -1 : enf_sets_find(d->group, one);
+        if (root >= 0 && group_part[root] >= 0) {
+            facet_part[i] = group_part[root];
+            continue;
+        }
         if (work >= PART_WORK) {
             part++;
             work = 0;
         }
-        d->at[t] = part;
-        work += d->work[t];
+        facet_part[i] = part;
+        if (root >= 0) group_part[root] = part;
+        work += root < 0 ? 1 : d->work[root];
         if (work > most) {
             most = work;
             heaviest = part;
         }
     }
     d->parts->count = part + 1;
-    return heaviest;
+    put_first(group_part, d->entered_count, heaviest);
+    put_first(facet_part, d->facet_count, heaviest);
+    return true;
 }
 
-/// Every tetrahedron's own part; the heaviest comes first, in exchange for the first.
-static void settle_parts(const divider *d, int32_t heaviest) {
-    for (int32_t t = 0; t < d->arrangement->tets.count; t++) {
-        int32_t part = d->at[enf_sets_find(d->group, t)];
-        d->part[t] = part == heaviest ? 0 : part == 0 ? heaviest : part;
-    }
-}
+// ---------------------------------------------------------------------------------------------- lists
 
-/// Offsets from numbers per part, which are at offset[part + 1].
-static void add_up(int32_t *offset, int32_t count) {
-    for (int32_t i = 0; i < count; i++) offset[i + 1] += offset[i];
-}
-
+/// The part's tetrahedra, each with its number there. False without memory.
 static bool list_tetrahedra(const divider *d) {
     enf_parts *parts = d->parts;
-    int32_t tets = d->arrangement->tets.count, count = parts->count;
-    int32_t *first = parts->tetrahedron_first = enf_array_zeroed((size_t)count + 2, sizeof *first);
-    parts->cuts = enf_array_zeroed((size_t)count, sizeof *parts->cuts);
-    if (!first || !parts->cuts) return false;
-    for (int32_t t = 0; t < tets; t++) {
-        if (cuts_of(d, t)) first[d->part[t] + 2]++;
+    int32_t *first = parts->tetrahedron_first = enf_array_zeroed((size_t)parts->count + 2, sizeof *first);
+    parts->cuts = enf_array_zeroed((size_t)parts->count, sizeof *parts->cuts);
+    parts->tetrahedra = enf_array_new((size_t)d->entered_count, sizeof *parts->tetrahedra);
+    if (!first || !parts->cuts || !parts->tetrahedra) return false;
+    for (int32_t i = 0; i < d->entered_count; i++) first[d->group_part[enf_sets_find(d->group, i)] + 2]++;
+    add_up(first + 1, parts->count);
+    for (int32_t i = 0; i < d->entered_count; i++) {
+        int32_t t = d->entered[i], part = d->group_part[enf_sets_find(d->group, i)];
+        parts->tetrahedra[first[part + 1]++] = t;
+        parts->cuts[part] += (size_t)cuts_of(d, t);
     }
-    add_up(first + 1, count);
-    parts->tetrahedra = enf_array_new((size_t)first[count + 1], sizeof *parts->tetrahedra);
-    if (!parts->tetrahedra) return false;
-    for (int32_t t = 0; t < tets; t++) {
-        parts->cell_of[t] = -1;
-        if (!cuts_of(d, t)) continue;
-        parts->tetrahedra[first[d->part[t] + 1]++] = t;
-        parts->cuts[d->part[t]] += (size_t)cuts_of(d, t);
-    }
-    for (int32_t part = 0; part < count; part++) {
+    for (int32_t part = 0; part < parts->count; part++) {
         for (int32_t i = first[part]; i < first[part + 1]; i++)
             parts->cell_of[parts->tetrahedra[i]] = i - first[part];
     }
@@ -158,43 +243,28 @@ static bool list_tetrahedra(const divider *d) {
 
 static bool list_facets(const divider *d) {
     enf_parts *parts = d->parts;
-    const enf_tet_mesh *tets = &d->arrangement->tets;
     int32_t *first = parts->facet_first = enf_array_zeroed((size_t)parts->count + 2, sizeof *first);
-    if (!first) return false;
-    for (int32_t f = 0; f < tets->facet_count; f++) {
-        if (parts->marked[f]) first[d->part[owner(d, tets->facet_sides[f])] + 2]++;
-    }
+    parts->facets = enf_array_new((size_t)d->facet_count, sizeof *parts->facets);
+    if (!first || !parts->facets) return false;
+    for (int32_t i = 0; i < d->facet_count; i++) first[d->facet_part[i] + 2]++;
     add_up(first + 1, parts->count);
-    parts->facets = enf_array_new((size_t)first[parts->count + 1], sizeof *parts->facets);
-    if (!parts->facets) return false;
-    for (int32_t f = 0; f < tets->facet_count; f++) {
-        if (parts->marked[f]) parts->facets[first[d->part[owner(d, tets->facet_sides[f])] + 1]++] = f;
-    }
+    for (int32_t i = 0; i < d->facet_count; i++) parts->facets[first[d->facet_part[i] + 1]++] = d->facets[i];
     return true;
 }
 
 bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const enf_candidates *candidates,
                     int threads) {
     const enf_crew crew = {.threads = threads};
-    size_t count = (size_t)arrangement->tets.count;
     memset(parts, 0, sizeof *parts);
     divider d = {.arrangement = arrangement, .candidates = candidates, .parts = parts};
-    d.group = enf_array_new(count, sizeof *d.group);
-    d.work = enf_array_zeroed(count, sizeof *d.work);
-    d.at = enf_array_new(count, sizeof *d.at);
-    d.part = enf_array_new(count, sizeof *d.part);
-    parts->cell_of = enf_array_new(count, sizeof *parts->cell_of);
-    parts->marked = enf_array_new((size_t)arrangement->tets.facet_count, sizeof *parts->marked);
-    bool good = d.group && d.work && d.at && d.part && parts->cell_of && parts->marked;
-    if (good) {
-        enf_parallel_for(&crew, arrangement->tets.facet_count / BLOCK + 1, mark_block, &d);
-        group_all(&d);
-        settle_parts(&d, fill_parts(&d));
-        good = list_tetrahedra(&d) && list_facets(&d);
-    }
+    bool good = list_entered(&d) && list_marked(&d, &crew) && group_all(&d) && fill_parts(&d) &&
+                list_facets(&d) && list_tetrahedra(&d); // the last: it numbers tetrahedra anew
+    free(d.entered);
+    free(d.facets);
+    free(d.block_first);
     free(d.group);
     free(d.work);
-    free(d.at);
-    free(d.part);
+    free(d.group_part);
+    free(d.facet_part);
     return good;
 }

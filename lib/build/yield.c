@@ -32,10 +32,10 @@ static bool reserve(enf_yield *yield, size_t facets, size_t covers, size_t piece
            enf_array_reserve(complex->piece_cover, yield->piece_cover_capacity, pieces);
 }
 
-bool enf_yield_reserve(enf_yield *yield, size_t facets, size_t corners, size_t covers) {
+bool enf_yield_reserve(enf_yield *yield, size_t facets, size_t corners, size_t covers, size_t pieces) {
     enf_complex *complex = &yield->complex;
-    return reserve(yield, facets, covers, facets) && reserve_loops(&complex->facets, facets, corners) &&
-           reserve_loops(&complex->covers, covers, 0) && reserve_loops(&complex->pieces, facets, 0);
+    return reserve(yield, facets, covers, pieces) && reserve_loops(&complex->facets, facets, corners) &&
+           reserve_loops(&complex->covers, covers, 0) && reserve_loops(&complex->pieces, pieces, 0);
 }
 
 // ---------------------------------------------------------------------------------------------- one part
@@ -123,6 +123,7 @@ typedef struct gathering {
     const enf_parts *parts;
     base *bases; ///< per part, and one more
     int32_t tetrahedron_count, point_count;
+    const double *points; ///< xyz
     enf_complex *complex;
     int32_t *into;
 } gathering;
@@ -247,16 +248,27 @@ static bool make_room(gathering *all, enf_yield *first, base end) {
            to->vertex_position;
 }
 
+enum { BLOCK = 1 << 15 }; ///< tetrahedra or points a job
+
+static int32_t block_end(int32_t count, int32_t block) {
+    return count - block * (int64_t)BLOCK < BLOCK ? count : (block + 1) * BLOCK;
+}
+
 /// What does not come from the parts: points, and tetrahedra that stay as they are.
-static void place_world(const gathering *all, const enf_geometry *geometry) {
+static void place_block(void *user, int32_t block, int thread) {
+    (void)thread;
+    const gathering *all = user;
     enf_complex *to = all->complex;
-    size_t points = (size_t)all->point_count;
-    memset(to->vertex_planes, 0xff, points * sizeof *to->vertex_planes); // -1 -1 -1
-    memcpy(to->vertex_position, geometry->points, points * sizeof *to->vertex_position);
-    for (int32_t t = 0; t < all->tetrahedron_count; t++) {
+    for (int32_t t = block * BLOCK; t < block_end(all->tetrahedron_count, block); t++) {
         if (all->parts->cell_of[t] >= 0) continue;
         to->tetrahedron_root[t] = -1 - t;
         all->into[t] = t;
+    }
+    for (int32_t v = block * BLOCK; v < block_end(all->point_count, block); v++) {
+        for (int k = 0; k < 3; k++) {
+            to->vertex_planes[v][k] = -1;
+            to->vertex_position[v][k] = all->points[3 * (size_t)v + (size_t)k];
+        }
     }
 }
 
@@ -298,6 +310,7 @@ bool enf_yields_gather(enf_yield *yields, const enf_parts *parts, const enf_crew
                      .parts = parts,
                      .tetrahedron_count = arrangement->tets.count,
                      .point_count = arrangement->geometry.point_count,
+                     .points = arrangement->geometry.points,
                      .complex = complex};
     all.bases = enf_array_zeroed((size_t)parts->count + 1, sizeof *all.bases);
     if (!all.bases) return false;
@@ -314,7 +327,8 @@ bool enf_yields_gather(enf_yield *yields, const enf_parts *parts, const enf_crew
     if (good) {
         enf_crew unwatched = {.threads = crew->threads};
         complex->tetrahedron_count = all.tetrahedron_count;
-        place_world(&all, &arrangement->geometry);
+        int32_t most = all.tetrahedron_count > all.point_count ? all.tetrahedron_count : all.point_count;
+        enf_parallel_for(&unwatched, most / BLOCK + 1, place_block, &all);
         take_first(&all, end);
         enf_parallel_for(&unwatched, parts->count, place_part, &all);
         enf_yield_free(&yields[0]);

@@ -20,9 +20,8 @@ typedef struct enf_yield {
     int32_t *cell_into; ///< per cell: the one that it went into, or itself
 } enf_yield;
 
-/// Makes room for so many facets (of one piece each), corners of facets, and covers in all. False without
-/// memory.
-bool enf_yield_reserve(enf_yield *yield, size_t facets, size_t corners, size_t covers);
+/// Makes room for so many facets, corners of facets, covers and pieces in all. False without memory.
+bool enf_yield_reserve(enf_yield *yield, size_t facets, size_t corners, size_t covers, size_t pieces);
 
 /// When the part has been cut: takes the trees of cuts, and the crossings that are corners of something,
 /// rounded to coordinates. `into` (taken over) is the joiner's. False without memory.
