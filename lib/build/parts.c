@@ -66,17 +66,11 @@ static void add_up(int32_t *offset, int32_t count) {
 // parts
 
 /// Numbers the tetrahedra that polygons enter. False without memory.
-static bool list_entered(divider *d) {
-    int32_t tets = d->arrangement->tets.count, count = 0;
+static bool number_entered(divider *d) {
+    int32_t tets = d->arrangement->tets.count;
     int32_t *number = d->parts->cell_of = enf_array_new((size_t)tets, sizeof *number);
     if (!number) return false;
-    for (int32_t t = 0; t < tets; t++) number[t] = cuts_of(d, t) ? count++ : -1;
-    d->entered = enf_array_new((size_t)count, sizeof *d->entered);
-    if (!d->entered) return false;
-    d->entered_count = count;
-    for (int32_t t = 0; t < tets; t++) {
-        if (number[t] >= 0) d->entered[number[t]] = t;
-    }
+    for (int32_t t = 0; t < tets; t++) number[t] = cuts_of(d, t) ? d->entered_count++ : -1;
     return true;
 }
 
@@ -122,17 +116,8 @@ static void mark_block(void *user, int32_t block, int thread) {
     d->block_first[block + 1] = count;
 }
 
-static void list_block(void *user, int32_t block, int thread) {
-    (void)thread;
-    const divider *d = user;
-    int32_t number = d->block_first[block];
-    for (int32_t f = block * BLOCK; f < block_end(d, block); f++) {
-        if (d->parts->marked[f]) d->facets[number++] = f;
-    }
-}
-
-/// Marks facets and lists them. False without memory.
-static bool list_marked(divider *d, const enf_crew *crew) {
+/// Marks facets and counts them. False without memory.
+static bool mark_facets(divider *d, const enf_crew *crew) {
     int32_t facets = d->arrangement->tets.facet_count, blocks = facets / BLOCK + 1;
     d->parts->marked = enf_array_new((size_t)facets, sizeof *d->parts->marked);
     d->block_first = enf_array_zeroed((size_t)blocks + 1, sizeof *d->block_first);
@@ -141,10 +126,38 @@ static bool list_marked(divider *d, const enf_crew *crew) {
     enf_parallel_for(crew, blocks, mark_block, d);
     add_up(d->block_first, blocks);
     d->facet_count = d->block_first[blocks];
-    d->facets = enf_array_new((size_t)d->facet_count, sizeof *d->facets);
-    if (!d->facets) return false;
-    enf_parallel_for(crew, blocks, list_block, d);
     return true;
+}
+
+/// What stays comes before what does not, so that the latter leaves no gaps in memory. False without any.
+static bool make_room(divider *d) {
+    size_t tetrahedra = (size_t)d->entered_count, facets = (size_t)d->facet_count;
+    return (d->parts->tetrahedra = enf_array_new(tetrahedra, sizeof *d->parts->tetrahedra)) &&
+           (d->parts->facets = enf_array_new(facets, sizeof *d->parts->facets)) &&
+           (d->entered = enf_array_new(tetrahedra, sizeof *d->entered)) &&
+           (d->facets = enf_array_new(facets, sizeof *d->facets)) &&
+           (d->group = enf_array_new(tetrahedra, sizeof *d->group)) &&
+           (d->work = enf_array_zeroed(tetrahedra, sizeof *d->work)) &&
+           (d->group_part = enf_array_new(tetrahedra, sizeof *d->group_part)) &&
+           (d->facet_part = enf_array_new(facets, sizeof *d->facet_part));
+}
+
+static void list_block(void *user, int32_t block, int thread) {
+    (void)thread;
+    const divider *d = user;
+    int32_t at = d->block_first[block];
+    for (int32_t f = block * BLOCK; f < block_end(d, block); f++) {
+        if (d->parts->marked[f]) d->facets[at++] = f;
+    }
+}
+
+/// What has been numbered and counted, in order.
+static void list_all(divider *d, const enf_crew *crew) {
+    const int32_t *number = d->parts->cell_of;
+    for (int32_t t = 0; t < d->arrangement->tets.count; t++) {
+        if (number[t] >= 0) d->entered[number[t]] = t;
+    }
+    enf_parallel_for(crew, d->arrangement->tets.facet_count / BLOCK + 1, list_block, d);
 }
 
 // ---------------------------------------------------------------------------------------------- which part
@@ -157,12 +170,9 @@ static int32_t owner(const divider *d, int32_t facet) {
     return first >= 0 || sides[1] < 0 ? first : number[sides[1]];
 }
 
-/// Groups tetrahedra and adds up their work. False without memory.
-static bool group_all(divider *d) {
-    int32_t count = d->entered_count;
-    int32_t *group = d->group = enf_array_new((size_t)count, sizeof *group);
-    int32_t *work = d->work = enf_array_zeroed((size_t)count, sizeof *work);
-    if (!group || !work) return false;
+/// Groups tetrahedra and adds up their work.
+static void group_all(const divider *d) {
+    int32_t count = d->entered_count, *group = d->group, *work = d->work;
     enf_sets_start(group, count);
     for (int32_t i = 0; i < d->facet_count; i++) {
         const int32_t *sides = d->arrangement->tets.facet_sides[d->facets[i]], *number = d->parts->cell_of;
@@ -177,7 +187,6 @@ static bool group_all(divider *d) {
         int32_t root = enf_sets_find(group, i);
         if (root != i) work[root] += work[i];
     }
-    return true;
 }
 
 /// Exchanges the numbers of a part and of the first.
@@ -186,13 +195,11 @@ static void put_first(int32_t *parts, int32_t count, int32_t part) {
 }
 
 /// Puts groups, and facets that go alone, into parts: those that follow each other into the same. The part
-/// with the most work comes first. False without memory.
-static bool fill_parts(divider *d) {
-    int32_t *group_part = d->group_part = enf_array_new((size_t)d->entered_count, sizeof *group_part);
-    int32_t *facet_part = d->facet_part = enf_array_new((size_t)d->facet_count, sizeof *facet_part);
+/// with the most work comes first.
+static void fill_parts(const divider *d) {
+    int32_t *group_part = d->group_part, *facet_part = d->facet_part;
     int64_t work = 0, most = -1;
     int32_t part = 0, heaviest = 0;
-    if (!group_part || !facet_part) return false;
     memset(group_part, 0xff, (size_t)d->entered_count * sizeof *group_part); // -1
     for (int32_t i = 0; i < d->facet_count; i++) {
         int32_t one = owner(d, d->facets[i]), root = one < 0 ? -1 : enf_sets_find(d->group, one);
@@ -215,7 +222,6 @@ static bool fill_parts(divider *d) {
     d->parts->count = part + 1;
     put_first(group_part, d->entered_count, heaviest);
     put_first(facet_part, d->facet_count, heaviest);
-    return true;
 }
 
 // ---------------------------------------------------------------------------------------------- lists
@@ -225,8 +231,7 @@ static bool list_tetrahedra(const divider *d) {
     enf_parts *parts = d->parts;
     int32_t *first = parts->tetrahedron_first = enf_array_zeroed((size_t)parts->count + 2, sizeof *first);
     parts->cuts = enf_array_zeroed((size_t)parts->count, sizeof *parts->cuts);
-    parts->tetrahedra = enf_array_new((size_t)d->entered_count, sizeof *parts->tetrahedra);
-    if (!first || !parts->cuts || !parts->tetrahedra) return false;
+    if (!first || !parts->cuts) return false;
     for (int32_t i = 0; i < d->entered_count; i++) first[d->group_part[enf_sets_find(d->group, i)] + 2]++;
     add_up(first + 1, parts->count);
     for (int32_t i = 0; i < d->entered_count; i++) {
@@ -244,8 +249,7 @@ static bool list_tetrahedra(const divider *d) {
 static bool list_facets(const divider *d) {
     enf_parts *parts = d->parts;
     int32_t *first = parts->facet_first = enf_array_zeroed((size_t)parts->count + 2, sizeof *first);
-    parts->facets = enf_array_new((size_t)d->facet_count, sizeof *parts->facets);
-    if (!first || !parts->facets) return false;
+    if (!first) return false;
     for (int32_t i = 0; i < d->facet_count; i++) first[d->facet_part[i] + 2]++;
     add_up(first + 1, parts->count);
     for (int32_t i = 0; i < d->facet_count; i++) parts->facets[first[d->facet_part[i] + 1]++] = d->facets[i];
@@ -257,8 +261,13 @@ bool enf_parts_make(enf_parts *parts, const enf_arrangement *arrangement, const 
     const enf_crew crew = {.threads = threads};
     memset(parts, 0, sizeof *parts);
     divider d = {.arrangement = arrangement, .candidates = candidates, .parts = parts};
-    bool good = list_entered(&d) && list_marked(&d, &crew) && group_all(&d) && fill_parts(&d) &&
-                list_facets(&d) && list_tetrahedra(&d); // the last: it numbers tetrahedra anew
+    bool good = number_entered(&d) && mark_facets(&d, &crew) && make_room(&d);
+    if (good) {
+        list_all(&d, &crew);
+        group_all(&d);
+        fill_parts(&d);
+        good = list_facets(&d) && list_tetrahedra(&d); // the last: it numbers tetrahedra anew
+    }
     free(d.entered);
     free(d.facets);
     free(d.block_first);

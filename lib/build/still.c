@@ -113,15 +113,16 @@ static void set_counts(enf_yield *yield, place end) {
 
 /// The parts' own facets follow: of each that is in a part there will be at least one, and cuts make more. As
 /// many as are usual: arrays that grow are copied, and what nothing is written to takes memory all the same
-/// where pages are large. For one that may cut, up to 1.6 facets, 6.3 corners and 1.2 covers were seen, and
-/// for each polygon that shares a facet with others a piece.
+/// where pages are large. For one that may cut, up to 1.6 facets, 6.3 corners and 1.2 covers were seen; for
+/// each polygon that shares a facet with others a piece, unless most are cuts.
 static bool reserve(enf_yield *yield, const enf_parts *parts, const enf_arrangement *arrangement, place end) {
     size_t own = (size_t)parts->facet_first[parts->count], cuts = 0;
     for (int32_t i = 0; i < parts->count; i++) cuts += parts->cuts[i];
     size_t facets = (size_t)end.facet + own, made = cuts + cuts * 3 / 4;
+    size_t others = (size_t)end.others > made ? (size_t)end.others : 0;
     size_t hits = (size_t)arrangement->hit_first[arrangement->tets.facet_count];
     return enf_yield_reserve(yield, facets + made, 3 * facets + 6 * cuts + cuts / 2, hits + cuts + cuts / 5,
-                             facets + made + (size_t)end.others);
+                             facets + made + others);
 }
 
 bool enf_still_emit(enf_yield *yield, const enf_arrangement *arrangement, const enf_parts *parts,
