@@ -83,30 +83,51 @@ static void the_top_is_the_smallest_after_any_change(void **state) {
     enf_heap_free(&heap);
 }
 
-static void the_pair_table_remembers_what_was_put_in(void **state) {
-    (void)state;
-    enum { NUMBERS = 40 };
+enum { NUMBERS = 40, FAR = 5000, PAIRS = 20000 }; ///< numbers that are FAR from each other share no page
+
+/// Puts pairs of the first numbers in and takes them out again, at random; `step` lies between two numbers.
+static void check_pair_table(int32_t step, bool expect) {
     uint64_t seed = 7;
-    print_message("seed %llu\n", (unsigned long long)seed);
+    print_message("seed %llu, step %d\n", (unsigned long long)seed, step);
     int32_t expected[NUMBERS][NUMBERS];
     for (int a = 0; a < NUMBERS; ++a)
         for (int b = 0; b < NUMBERS; ++b) expected[a][b] = -1;
     enf_pair_table table;
-    assert_true(enf_pair_table_create(&table, 1));
-    for (int round = 0; round < 20000; ++round) {
-        size_t room = round < NUMBERS * NUMBERS / 2 ? (size_t)round + 1 : NUMBERS * NUMBERS / 2;
-        assert_true(enf_pair_table_reserve(&table, room));
+    assert_true(enf_pair_table_create(&table, NUMBERS * step));
+    for (int a = 0; a < NUMBERS && expect; ++a)
+        for (int b = 0; b < a; ++b) enf_pair_table_expect(&table, a * step, b * step);
+    for (int round = 0; round < PAIRS; ++round) {
         int32_t a = (int32_t)(next_random(&seed) % NUMBERS), b = (int32_t)(next_random(&seed) % NUMBERS);
         if (a == b) continue;
-        int32_t *value = enf_pair_table_at(&table, a, b);
-        assert_int_equal(*value, expected[a][b]);
+        assert_int_equal(enf_pair_table_find(&table, a * step, b * step), expected[a][b]);
         if (next_random(&seed) % 2) {
-            *value = expected[a][b] = expected[b][a] = round;
+            assert_true(enf_pair_table_put(&table, a * step, b * step, round));
+            expected[a][b] = expected[b][a] = round;
         } else {
-            enf_pair_table_remove(&table, b, a);
+            enf_pair_table_remove(&table, b * step, a * step);
             expected[a][b] = expected[b][a] = -1;
         }
     }
+    enf_pair_table_free(&table);
+}
+
+static void the_pair_table_remembers_what_was_put_in(void **state) {
+    (void)state;
+    check_pair_table(1, false); // all on one page, which grows
+    check_pair_table(1, true);
+    check_pair_table(1000, false);
+    check_pair_table(FAR, true); // each on its own
+}
+
+static void the_pair_table_takes_a_number_that_is_in_all_pairs(void **state) {
+    (void)state;
+    enf_pair_table table;
+    assert_true(enf_pair_table_create(&table, PAIRS));
+    for (int32_t other = 0; other < PAIRS - 1; ++other)
+        assert_true(enf_pair_table_put(&table, PAIRS - 1, other, other));
+    for (int32_t other = 0; other < PAIRS - 1; other += 2) enf_pair_table_remove(&table, other, PAIRS - 1);
+    for (int32_t other = 0; other < PAIRS - 1; ++other)
+        assert_int_equal(enf_pair_table_find(&table, other, PAIRS - 1), other % 2 ? other : -1);
     enf_pair_table_free(&table);
 }
 
@@ -116,6 +137,7 @@ int main(void) {
         cmocka_unit_test(ties_are_broken_by_first_then_second),
         cmocka_unit_test(the_top_is_the_smallest_after_any_change),
         cmocka_unit_test(the_pair_table_remembers_what_was_put_in),
+        cmocka_unit_test(the_pair_table_takes_a_number_that_is_in_all_pairs),
     };
     return cmocka_run_group_tests_name("heap", tests, NULL, NULL);
 }

@@ -155,7 +155,6 @@ static bool allocate(enf_portal_heap *portals, size_t cells, size_t pieces, size
     portals->piece_next = enf_array_new(pieces, sizeof *portals->piece_next);
     portals->cells = enf_array_new(cells, sizeof *portals->cells);
     if (!portals->portals || !portals->piece_next || !portals->cells ||
-        !enf_pair_table_create(&portals->table, count) ||
         !enf_block_heap_create(&portals->heap, (int32_t)count))
         return false;
     for (size_t cell = 0; cell < cells; ++cell)
@@ -180,7 +179,8 @@ static void join_pieces(enf_portal_heap *portals, enf_portal *portal, const enf_
 }
 
 /// Pieces of the same two fine cells are neighbours in the canonical order: one portal for each such run.
-static void fill_portals(enf_portal_heap *portals) {
+/// False without memory.
+static bool fill_portals(enf_portal_heap *portals) {
     const enf_surface *surface = &portals->surface;
     int32_t number = -1;
     for (int32_t piece = 0; piece < surface->piece_count; ++piece) {
@@ -191,7 +191,7 @@ static void fill_portals(enf_portal_heap *portals) {
             portals->portals[number].cell[1] != cell[1]) {
             portals->portals[++number] = (enf_portal){
                 .cell = {cell[0], cell[1]}, .first_piece = -1, .last_piece = -1, .largest_piece = -1};
-            *enf_pair_table_at(&portals->table, cell[0], cell[1]) = number;
+            if (!enf_pair_table_put(&portals->table, cell[0], cell[1], number)) return false;
             link_portal(portals, number, 0);
             link_portal(portals, number, 1);
         }
@@ -205,15 +205,20 @@ static void fill_portals(enf_portal_heap *portals) {
     }
     portals->portal_count = number + 1;
     enf_surface_forget_cells(&portals->surface);
+    return true;
 }
 
-static int32_t count_portals(const enf_surface *surface) {
+/// Counts them, and tells the table of them.
+static int32_t count_portals(enf_portal_heap *portals) {
+    const enf_surface *surface = &portals->surface;
     int32_t count = 0;
     const int32_t *last = NULL;
     for (int32_t piece = 0; piece < surface->piece_count; ++piece) {
         if (!surface->piece_open[piece]) continue;
         const int32_t *cell = surface->piece_cell[piece];
-        if (!last || last[0] != cell[0] || last[1] != cell[1]) ++count;
+        if (last && last[0] == cell[0] && last[1] == cell[1]) continue;
+        enf_pair_table_expect(&portals->table, cell[0], cell[1]);
+        ++count;
         last = cell;
     }
     return count;
@@ -227,8 +232,8 @@ enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, en
     enf_graph_free(graph);
     if (status != ENF_OK) return status;
     size_t pieces = (size_t)portals->surface.piece_count;
-    bool fine = allocate(portals, cells, pieces, (size_t)count_portals(&portals->surface));
-    if (fine) fill_portals(portals);
+    bool fine = enf_pair_table_create(&portals->table, (int32_t)cells) &&
+                allocate(portals, cells, pieces, (size_t)count_portals(portals)) && fill_portals(portals);
     for (int32_t number = 0; fine && number < portals->portal_count; ++number) {
         double weight;
         fine = weigh(portals, &portals->portals[number], &weight);
@@ -258,14 +263,16 @@ enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t block, int32_t 
     return ENF_OK;
 }
 
-/// The portal of the gone cell becomes one of the kept cell. Its weight can only have grown.
-static void hand_over(enf_portal_heap *portals, int32_t number, int side, int32_t kept) {
+/// The portal of the gone cell becomes one of the kept cell. Its weight can only have grown. False without
+/// memory.
+static bool hand_over(enf_portal_heap *portals, int32_t number, int side, int32_t kept) {
     enf_portal *portal = &portals->portals[number];
     portal->cell[side] = kept;
     portal->weighed_at = portal->silhouette_at[side] = 0;
-    *enf_pair_table_at(&portals->table, kept, portal->cell[!side]) = number;
+    if (!enf_pair_table_put(&portals->table, kept, portal->cell[!side], number)) return false;
     link_portal(portals, number, side);
     set_key(portals, number, key_weight(portals, number));
+    return true;
 }
 
 static bool same_normal(const double a[3], const double b[3]) {
@@ -294,17 +301,17 @@ static void join_portals(enf_portal_heap *portals, int32_t number, int side, con
     set_key(portals, number, bound_weight(portals, portal));
 }
 
-/// Gives all portals of the gone cell to the kept one.
-static void move_portals(enf_portal_heap *portals, int32_t kept, int32_t gone) {
+/// Gives all portals of the gone cell to the kept one. False without memory.
+static bool move_portals(enf_portal_heap *portals, int32_t kept, int32_t gone) {
     for (int32_t number = portals->cells[gone].first_portal, next; number >= 0; number = next) {
         enf_portal *portal = &portals->portals[number];
         int side = side_of(portal, gone);
         next = portal->next[side];
         int32_t beyond = portal->cell[!side];
         enf_pair_table_remove(&portals->table, gone, beyond);
-        int32_t twin = *enf_pair_table_at(&portals->table, kept, beyond);
+        int32_t twin = enf_pair_table_find(&portals->table, kept, beyond);
         if (twin < 0) {
-            hand_over(portals, number, side, kept);
+            if (!hand_over(portals, number, side, kept)) return false;
             continue;
         }
         unlink_portal(portals, number, !side);
@@ -313,6 +320,7 @@ static void move_portals(enf_portal_heap *portals, int32_t kept, int32_t gone) {
     }
     portals->cells[gone].first_portal = -1;
     portals->cells[gone].degree = 0;
+    return true;
 }
 
 /// The kept cell has a smaller number to show: that decides ties.
@@ -342,6 +350,5 @@ bool enf_portal_heap_collapse(enf_portal_heap *portals, int32_t number, int32_t 
     if (!enf_surface_is_lid(&portals->surface, small)) ++portals->cells[large].age;
     if (!enf_surface_merge(&portals->surface, large, small)) return false;
     if (portals->cells[large].smallest != *kept) renumber(portals, large, *kept);
-    move_portals(portals, large, small);
-    return true;
+    return move_portals(portals, large, small);
 }
