@@ -4,7 +4,6 @@
 #endif
 #include "cli/bench_child.h"
 
-#include "base/memory.h"
 #include "cli/heap.h"
 
 #include <errno.h>
@@ -18,8 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { SMALLEST_PAGE = 4096 }; ///< bytes
-enum { PATIENCE = 20 };        ///< a child that sleeps is ended after so many times its CPU limit
+enum { PATIENCE = 20 }; ///< a child that sleeps is ended after so many times its CPU limit
 
 void *cli_shared_new(size_t size) {
     void *shared = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -28,18 +26,6 @@ void *cli_shared_new(size_t size) {
 
 void cli_shared_free(void *shared, size_t size) {
     if (shared) munmap(shared, size);
-}
-
-void cli_memory_touch(uint64_t bytes) {
-    const char *limiter;
-    if (bytes == 0 || bytes > enf_memory_limit(&limiter) / 2) return;
-    char *data = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (data == MAP_FAILED) return;
-#ifdef MADV_HUGEPAGE
-    madvise(data, bytes, MADV_HUGEPAGE);
-#endif
-    for (uint64_t i = 0; i < bytes; i += SMALLEST_PAGE) data[i] = 1;
-    munmap(data, bytes);
 }
 
 void cli_child_extend(double seconds) {

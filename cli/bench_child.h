@@ -22,11 +22,6 @@ void cli_shared_free(void *shared, size_t size);
 enf_status cli_child_run(void (*work)(void *shared), void *shared, double seconds, uint64_t bytes,
                          cli_child *child, enf_error *error);
 
-/// Takes so much memory from the machine and gives it back at once, so that a child soon finds it there. The
-/// host of a virtual machine may keep what that has not used for seconds, and give it again only at a cost
-/// that is neither the program's nor the same from run to run. Does nothing where there isn't so much.
-void cli_memory_touch(uint64_t bytes);
-
 /// In the child: allows so many CPU seconds from now on.
 void cli_child_extend(double seconds);
 

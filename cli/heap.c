@@ -4,7 +4,6 @@
 #include "base/array.h"
 #include "base/memory.h"
 
-#include <stdint.h>
 #include <stdlib.h>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -25,10 +24,17 @@ enum { MAPPED = 2 << 20, MOST_MAPS = 1 << 16 };
 
 enum { NEVER = -1 }; ///< as a size: the largest
 
-void cli_heap_prepare(void) {
+enum { SMALLEST_PAGE = 4096, LEFT = 1 << 20 }; ///< bytes; of the space, for what is there already
+
+/// How much space is set apart.
+static size_t count_space(void) {
     const char *limiter;
     uint64_t part = enf_memory_limit(&limiter) / 4;
-    size_t bytes = (size_t)(part < SPACE ? part : SPACE);
+    return (size_t)(part < SPACE ? part : SPACE);
+}
+
+void cli_heap_prepare(void) {
+    size_t bytes = count_space();
     mallopt(M_ARENA_MAX, 1);          // for all threads
     mallopt(M_TRIM_THRESHOLD, NEVER); // that would give the space back
     mallopt(M_MMAP_MAX, 0);           // from the heap, whatever its size
@@ -37,10 +43,20 @@ void cli_heap_prepare(void) {
     mallopt(M_MMAP_THRESHOLD, MAPPED);
 }
 
+void cli_heap_touch(uint64_t bytes) {
+    size_t space = count_space() - LEFT, touched = bytes < space ? (size_t)bytes : space;
+    volatile char *data = enf_array_new(touched, 1);
+    for (size_t i = 0; data && i < touched; i += SMALLEST_PAGE) data[i] = 1;
+    free((void *)data);
+}
+
 void cli_heap_trim(void) {
     malloc_trim(0);
 }
 #else
 void cli_heap_prepare(void) {}
+void cli_heap_touch(uint64_t bytes) {
+    (void)bytes;
+}
 void cli_heap_trim(void) {}
 #endif

@@ -7,10 +7,17 @@
 #ifndef CLI_HEAP_H
 #define CLI_HEAP_H
 
+#include <stdint.h>
+
 /// Sets address space apart, no memory: 2 GiB, or a quarter of what the process may have if that is less.
 /// What does not fit in takes large arrays from the system, and gives them back. Without glibc nothing
 /// happens.
 void cli_heap_prepare(void);
+
+/// Takes so much memory for the heap, as far as there is space set apart, so that nothing waits for it later.
+/// For measuring: the host of a virtual machine may have to be asked for memory, at a cost that is neither
+/// the program's nor the same from run to run. To be called when the heap has been prepared.
+void cli_heap_touch(uint64_t bytes);
 
 /// Gives back what is free, and the space: before another process is made of this one, or a limit is set. To
 /// be prepared again after it.
