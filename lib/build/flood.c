@@ -50,8 +50,8 @@ typedef struct flood {
     flood_block *blocks;
     int32_t block_count;
     flooder *flooders;
-    enf_candidates *sorted;
-    int32_t *hit_first; ///< the arrangement's, while they are sorted
+    enf_candidates *sorted; ///< what the blocks have found, by tetrahedron
+    int32_t *hit_first;     ///< the arrangement's, while hits are sorted by facet
     enf_hit *hits;
 } flood;
 

@@ -62,8 +62,7 @@ static void add_up(int32_t *offset, int32_t count) {
     for (int32_t i = 0; i < count; i++) offset[i + 1] += offset[i];
 }
 
-// ---------------------------------------------------------------------------------------------- what is in
-// parts
+// ---------------------------------------------------------------------------------------------- contents
 
 /// Numbers the tetrahedra that polygons enter. False without memory.
 static bool number_entered(divider *d) {
