@@ -191,10 +191,10 @@ static bool drop_cell(world *w, int index) {
     int32_t *list = WRITABLE(view->fine_facets), *root = WRITABLE(view->tetrahedron_root);
     int32_t(*child)[2] = WRITABLE(view->node_child), *region = WRITABLE(view->fine_region);
     int32_t *cell = WRITABLE(view->fine_cell), *seen = WRITABLE(view->seen);
-    int64_t *seen_first = WRITABLE(view->seen_offset);
+    int32_t *seen_first = WRITABLE(view->seen_offset);
     enf_file_spawn *spawns = WRITABLE(view->spawns);
     int32_t count = view->fine_count, facets = first[index + 1] - first[index];
-    int64_t sights = seen_first[index + 1] - seen_first[index];
+    int32_t sights = seen_first[index + 1] - seen_first[index];
     if (index >= count - 1) return false;
     for (int32_t i = first[index]; i < view->fine_facet_count - facets; i++) list[i] = list[i + facets];
     for (int64_t i = seen_first[index]; i < view->seen_count - sights; i++) seen[i] = seen[i + sights];
@@ -430,7 +430,7 @@ static bool see_other_polygon(world *w, int index) {
 }
 
 static bool see_one_less(world *w, int index) {
-    int64_t *offset = WRITABLE(w->view.seen_offset);
+    int32_t *offset = WRITABLE(w->view.seen_offset);
     int32_t c = 1;
     while (offset[c] == offset[c - 1]) c++;
     offset[c]--;

@@ -45,10 +45,10 @@ static void use_triangles(const enf_world *world, const enf_file_view *file, con
     }
 }
 
-static void use_loops(const enf_file_view *file, int32_t count, const int64_t *offset,
+static void use_loops(const enf_file_view *file, int32_t count, const int32_t *offset,
                       const enf_file_corner *corners) {
     for (int32_t i = 0; i < count; i++) {
-        for (int64_t k = offset[i]; k < offset[i + 1]; k++) {
+        for (int32_t k = offset[i]; k < offset[i + 1]; k++) {
             sink += file->vertex_position[corners[k].vertex][0];
             sink += file->planes[corners[k].edge_plane][1];
         }

@@ -546,7 +546,7 @@ static void each_kind_of_bad_index_is_named(void **state) {
     expect_refusal(s, "BOX", 0, 0x7fc00000);   // NaN
     expect_refusal(s, "POINT", 4, 0x7ff80000); // NaN
     expect_refusal(s, "PLANE", 8, -4);
-    expect_refusal(s, "FACTOFF", 8, 1 << 20);
+    expect_refusal(s, "FACTOFF", 4, 1 << 20);
     expect_refusal(s, "FACTOFF", 0, 1);
     expect_refusal(s, "FACTCORN", 0, 27);
     expect_refusal(s, "FACTFINE", 0, 49); // no such fine cell

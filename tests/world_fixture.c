@@ -89,7 +89,7 @@ static double side_of(const double *p, const double *q, const double *r, const d
 
 static void add_corner(enf_loops *loops, int32_t vertex, int32_t edge_plane) {
     loops->corners[loops->corner_count++] = (enf_corner){vertex, edge_plane};
-    loops->offset[loops->count] = (int64_t)loops->corner_count;
+    loops->offset[loops->count] = (int32_t)loops->corner_count;
 }
 
 static void new_loops(fixture *f, enf_loops *loops, int32_t most) {
@@ -192,7 +192,7 @@ static void make_wall(fixture *f) {
             c->cover_polygon[c->covers.count] = polygon;
             c->cover_side[c->covers.count] = 1;
             if (polygon % 2) {
-                c->covers.offset[++c->covers.count] = (int64_t)c->covers.corner_count; // the whole facet
+                c->covers.offset[++c->covers.count] = (int32_t)c->covers.corner_count; // the whole facet
             } else {
                 add_loop(&c->covers, corner, 0);
             }

@@ -30,7 +30,7 @@ static const enf_corner *own_or_facet(const enf_complex *complex, const enf_loop
         from = &complex->facets;
         loop = facet;
     }
-    *count = (int32_t)(from->offset[loop + 1] - from->offset[loop]);
+    *count = from->offset[loop + 1] - from->offset[loop];
     return from->corners + from->offset[loop];
 }
 

@@ -40,7 +40,7 @@ typedef struct enf_corner {
 typedef struct enf_loops {
     int32_t count;
     size_t offset_capacity;
-    int64_t *offset; ///< count + 1
+    int32_t *offset; ///< count + 1
     enf_corner *corners;
     size_t corner_count, corner_capacity;
 } enf_loops;
@@ -88,7 +88,7 @@ typedef struct enf_complex {
     int32_t *piece_facet; ///< ascending
     int32_t *piece_cover; ///< a cover that the whole piece lies in, ENF_PIECE_OPEN or ENF_PIECE_SEALED
 
-    int64_t *seen_offset; ///< cell_count + 1 offsets
+    int32_t *seen_offset; ///< cell_count + 1 offsets
     int32_t *seen;        ///< mesh polygons whose front a fine cell sees, ascending
 
     // Work done and work skipped, for the report.

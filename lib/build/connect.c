@@ -95,7 +95,7 @@ static void sort_numbers(int32_t *numbers, int64_t count) {
 
 bool enf_complex_list_seen(enf_complex *complex) {
     size_t cells = (size_t)complex->cell_count;
-    int64_t *next = complex->seen_offset = enf_array_zeroed(cells + 2, sizeof *next);
+    int32_t *next = complex->seen_offset = enf_array_zeroed(cells + 2, sizeof *next);
     complex->seen = enf_array_new((size_t)complex->covers.count, sizeof *complex->seen);
     if (!next || !complex->seen) return false;
     for (int pass = 0; pass < 2; pass++) {
@@ -112,12 +112,12 @@ bool enf_complex_list_seen(enf_complex *complex) {
         }
         for (size_t i = 0; pass == 0 && i < cells; i++) next[i + 2] += next[i + 1];
     }
-    int64_t kept = 0, begin = 0;
+    int32_t kept = 0, begin = 0;
     for (size_t cell = 0; cell < cells; cell++) {
-        int64_t end = next[cell + 1];
+        int32_t end = next[cell + 1];
         sort_numbers(complex->seen + begin, end - begin);
         next[cell] = kept;
-        for (int64_t i = begin; i < end; i++) {
+        for (int32_t i = begin; i < end; i++) {
             if (i == begin || complex->seen[i] != complex->seen[i - 1])
                 complex->seen[kept++] = complex->seen[i];
         }

@@ -68,8 +68,7 @@ static bool take_cover(enf_settler *s, int32_t facet, int32_t cover, enf_loop co
 
 static enf_loop copy_loop(enf_settler *s, const enf_loops *loops, int32_t index, int32_t plane) {
     const enf_corner *corners = loops->corners + loops->offset[index];
-    return enf_pool_loop(&s->pool, plane, corners,
-                         (int32_t)(loops->offset[index + 1] - loops->offset[index]));
+    return enf_pool_loop(&s->pool, plane, corners, loops->offset[index + 1] - loops->offset[index]);
 }
 
 /// A facet that covers share, and the rest of it.
@@ -109,8 +108,8 @@ static bool add_covers(enf_settler *s, int32_t first) {
     for (int32_t i = first, next; i >= 0; i = next) {
         enf_cover *cover = &s->covers[i];
         size_t count = (size_t)complex->covers.count + 1;
-        int64_t begin = cover->loop < 0 ? 0 : s->loops.offset[cover->loop];
-        int32_t corners = cover->loop < 0 ? 0 : (int32_t)(s->loops.offset[cover->loop + 1] - begin);
+        int32_t begin = cover->loop < 0 ? 0 : s->loops.offset[cover->loop];
+        int32_t corners = cover->loop < 0 ? 0 : s->loops.offset[cover->loop + 1] - begin;
         if (!enf_array_reserve(complex->cover_polygon, s->yield->cover_polygon_capacity, count) ||
             !enf_array_reserve(complex->cover_side, s->yield->cover_side_capacity, count) ||
             !enf_loops_append(&complex->covers, corners ? s->loops.corners + begin : NULL, corners)) {
@@ -141,8 +140,8 @@ static bool add_loop(enf_settler *s, int32_t facet) {
         }
         h = half->next;
     } while (h != first);
-    loops->offset[++loops->count] = (int64_t)loops->corner_count;
-    return true;
+    loops->offset[++loops->count] = (int32_t)loops->corner_count;
+    return loops->corner_count <= INT32_MAX;
 }
 
 bool enf_emit_facet(enf_settler *s, int32_t facet) {

@@ -153,14 +153,15 @@ void enf_loop_area(const enf_corner *corners, int64_t count, const double (*posi
 }
 
 bool enf_loops_append(enf_loops *loops, const enf_corner *corners, int32_t count) {
-    if (!enf_array_reserve(loops->offset, loops->offset_capacity, (size_t)loops->count + 2) ||
+    if (loops->corner_count + (size_t)count > INT32_MAX ||
+        !enf_array_reserve(loops->offset, loops->offset_capacity, (size_t)loops->count + 2) ||
         !enf_array_reserve(loops->corners, loops->corner_capacity, loops->corner_count + (size_t)count)) {
         return false;
     }
     loops->offset[0] = 0;
     if (count > 0) memcpy(loops->corners + loops->corner_count, corners, (size_t)count * sizeof *corners);
     loops->corner_count += (size_t)count;
-    loops->offset[++loops->count] = (int64_t)loops->corner_count;
+    loops->offset[++loops->count] = (int32_t)loops->corner_count;
     return true;
 }
 

@@ -68,7 +68,7 @@ static int32_t fill_facet(const still *all, int32_t source, int32_t added, int32
         complex->facets.corners[3 * (size_t)added + (size_t)i] =
             (enf_corner){corner[(i + 1) % 3], edge_plane[(i + 1) % 3]};
     }
-    complex->facets.offset[added] = 3 * (int64_t)added;
+    complex->facets.offset[added] = 3 * added;
     complex->facet_plane[added] = source;
     for (int side = 0; side < 2; side++)
         complex->facet_cell[added][side] = all->arrangement->tets.facet_sides[source][side];
@@ -105,7 +105,7 @@ static void set_counts(enf_yield *yield, place end) {
     yield->still_count = complex->facet_count = complex->facets.count = complex->pieces.count = end.facet;
     complex->facets.corner_count = 3 * (size_t)end.facet;
     complex->covers.count = end.cover;
-    complex->facets.offset[end.facet] = 3 * (int64_t)end.facet;
+    complex->facets.offset[end.facet] = 3 * end.facet;
     complex->covers.offset[end.cover] = complex->pieces.offset[end.facet] = 0;
     complex->facet_cover[end.facet] = end.cover;
     complex->facet_piece[end.facet] = end.facet;

@@ -82,7 +82,7 @@ static void lend_complex(enf_file_view *view, const enf_complex *complex) {
     view->seen_count = complex->seen_offset ? complex->seen_offset[complex->cell_count] : 0;
 }
 
-static void lend_loops(const enf_loops *loops, int32_t *count, const int64_t **offset, int64_t *corner_count,
+static void lend_loops(const enf_loops *loops, int32_t *count, const int32_t **offset, int64_t *corner_count,
                        const enf_file_corner **corners) {
     *count = loops->count;
     *offset = loops->offset;

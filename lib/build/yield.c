@@ -13,9 +13,9 @@ void enf_yield_free(enf_yield *yield) {
     memset(yield, 0, sizeof *yield);
 }
 
-/// Room for loops and their corners.
+/// Room for loops and their corners, which have numbers.
 static bool reserve_loops(enf_loops *loops, size_t count, size_t corners) {
-    return enf_array_reserve(loops->offset, loops->offset_capacity, count + 1) &&
+    return corners <= INT32_MAX && enf_array_reserve(loops->offset, loops->offset_capacity, count + 1) &&
            enf_array_reserve(loops->corners, loops->corner_capacity, corners);
 }
 
@@ -154,7 +154,7 @@ static int32_t world_cell(const gathering *all, int32_t part, int32_t cell) {
 static void place_loops(const gathering *all, int32_t part, const enf_loops *from, enf_loops *to,
                         int32_t loop, size_t corner) {
     for (int32_t i = 0; i < from->count; i++)
-        to->offset[(size_t)loop + (size_t)i + 1] = from->offset[i + 1] + (int64_t)corner;
+        to->offset[(size_t)loop + (size_t)i + 1] = from->offset[i + 1] + (int32_t)corner;
     for (size_t i = 0; i < from->corner_count; i++) {
         enf_corner one = from->corners[i];
         if (one.vertex >= all->point_count) one.vertex += all->bases[part].vertex;

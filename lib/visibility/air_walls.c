@@ -122,7 +122,7 @@ static bool sort_pieces(closed *closed, const enf_file_view *view) {
 
 /// Appends the corners of a piece, or of its facet if it has none of its own.
 static bool take_corners(closed *closed, const enf_file_view *view, int32_t piece, int32_t *count) {
-    const int64_t *offset = &view->piece_offset[piece];
+    const int32_t *offset = &view->piece_offset[piece];
     const enf_file_corner *corners = view->piece_corners;
     if (offset[0] == offset[1]) {
         offset = &view->facet_offset[view->piece_facet[piece]];

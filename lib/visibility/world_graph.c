@@ -83,7 +83,7 @@ enf_status enf_world_graph_make(enf_portal_graph *graph, const enf_file_view *vi
 
 /// The corners of a piece, or of its facet if it has none of its own.
 static const enf_file_corner *piece_corners(const enf_file_view *view, int32_t piece, int64_t *count) {
-    const int64_t *offset = &view->piece_offset[piece];
+    const int32_t *offset = &view->piece_offset[piece];
     const enf_file_corner *corners = view->piece_corners;
     if (offset[0] == offset[1]) {
         offset = &view->facet_offset[view->piece_facet[piece]];

@@ -11,8 +11,8 @@
 #include "enfilade/base.h"
 
 #define ENF_FILE_MAGIC "ENFILADE"            ///< 8 bytes, no terminating zero in the file
-#define ENF_FILE_MAJOR 2                     ///< a reader refuses another major version
-#define ENF_FILE_MINOR 2                     ///< a reader accepts any minor version of its major one
+#define ENF_FILE_MAJOR 3                     ///< a reader refuses another major version
+#define ENF_FILE_MINOR 0                     ///< a reader accepts any minor version of its major one
 #define ENF_FILE_ALIGNMENT 16                ///< sections begin at multiples of this
 #define ENF_FILE_GRID_MAX 9007199254740992.0 ///< 2^53: no grid coordinate is larger in magnitude
 
@@ -285,7 +285,7 @@ typedef struct enf_file_view {
     int32_t fine_facet_count;
     const int32_t *fine_facets;
     int32_t facet_count;
-    const int64_t *facet_offset;
+    const int32_t *facet_offset;
     int64_t facet_corner_count;
     const enf_file_corner *facet_corners;
     const int32_t *facet_plane;
@@ -293,18 +293,18 @@ typedef struct enf_file_view {
     const int32_t *facet_cover;     ///< facet_count + 1
     const int32_t *facet_piece;     ///< facet_count + 1
     int32_t cover_count;
-    const int64_t *cover_offset; ///< a cover or piece without corners is the whole facet
+    const int32_t *cover_offset; ///< a cover or piece without corners is the whole facet
     int64_t cover_corner_count;
     const enf_file_corner *cover_corners;
     const int32_t *cover_polygon;
     const uint8_t *cover_side;
     int32_t piece_count;
-    const int64_t *piece_offset;
+    const int32_t *piece_offset;
     int64_t piece_corner_count;
     const enf_file_corner *piece_corners;
     const int32_t *piece_facet;
     const int32_t *piece_cover; ///< >= 0 occluded by that cover, -1 open, -2 a sealed crack
-    const int64_t *seen_offset; ///< fine_count + 1
+    const int32_t *seen_offset; ///< fine_count + 1
     int64_t seen_count;
     const int32_t *seen; ///< mesh polygons
     int32_t mesh_polygon_count;
@@ -314,7 +314,7 @@ typedef struct enf_file_view {
     const int32_t *mesh_polygon_source;     ///< input polygon
     const int32_t (*mesh_polygon_plane)[3]; ///< points
     int32_t portal_loop_count;              ///< enf_portals.polygons: half as many as portal_polygons
-    const int64_t *portal_loop_offset;
+    const int32_t *portal_loop_offset;
     int64_t portal_loop_corner_count;
     const enf_file_corner *portal_loop_corners;
     const int32_t *portal_loop_plane;
