@@ -401,13 +401,14 @@ static bool holds_edge(enf_geometry *geometry, const enf_crossing *crossing, int
     return holding >= 2;
 }
 
-/// The crossing in rounded coordinates.
+/// Is the quotient as good as any position? A quarter of a grid step is as good as the points themselves.
+static bool is_located(const enf_crossing *crossing) {
+    return crossing->located ||
+           crossing->at_error + 0x1p53 * crossing->weight_error < 0.25 * fabs(crossing->weight);
+}
+
+/// The crossing in rounded coordinates, by what doubles alone do not tell.
 static void find_position(const enf_geometry *geometry, const enf_crossing *crossing, double position[3]) {
-    // A quarter of a grid step is as good as the points themselves.
-    if (crossing->at_error + 0x1p53 * crossing->weight_error < 0.25 * fabs(crossing->weight)) {
-        for (int i = 0; i < 3; i++) position[i] = crossing->at[i] / crossing->weight;
-        return;
-    }
     enf_doubled_meeting room;
     const enf_doubled_meeting *meeting = meeting_of(geometry, crossing, &room);
     if (meeting && enf_doubled_meeting_point(meeting, origin_of(geometry, crossing), position)) return;
@@ -416,27 +417,38 @@ static void find_position(const enf_geometry *geometry, const enf_crossing *cros
     enf_exact_planes_meet(plane, position);
 }
 
-/// Notes where the crossing is, if that is not known.
+/// How far a position is off along an axis: a step, or a unit in the last place.
+static double position_error(const double position[3]) {
+    return 1 + 0x1p-50 * largest(position);
+}
+
+/// Notes where the crossing is, if its quotient does not tell.
 static void locate(const enf_geometry *geometry, enf_crossing *crossing) {
-    if (crossing->located) return;
-    find_position(geometry, crossing, crossing->position);
+    if (is_located(crossing)) return;
+    double position[3];
+    find_position(geometry, crossing, position);
+    crossing->weight = crossing->weight_sign;
+    for (int i = 0; i < 3; i++) crossing->at[i] = crossing->weight * position[i];
+    crossing->at_error = position_error(position);
+    crossing->weight_error = 0;
     crossing->located = true;
 }
 
-/// The side by the crossing's position, 0 if it may be off by more than its distance from the plane.
+/// The side by the position of a crossing that is located, 0 if that may be off by more than its distance
+/// from the plane.
 static int side_of_position(const enf_geometry *geometry, const enf_crossing *crossing, int32_t plane,
                             const enf_plane_filter *filter) {
     const double *p = geometry->points + 3 * (size_t)geometry->planes[plane][0];
-    double value = 0, magnitude = 0, reach = 0;
+    double value = 0, magnitude = 0, reach = 0, position[3];
     for (int i = 0; i < 3; i++) {
-        double difference = crossing->position[i] - p[i];
+        position[i] = crossing->at[i] / crossing->weight;
+        double difference = position[i] - p[i];
         value += filter->normal[i] * difference;
         magnitude += fabs(filter->normal[i] * difference);
         reach += fabs(difference);
     }
-    double off = 1 + 0x1p-50 * largest(crossing->position); // a step, or a unit in the last place
     double error = 6 * U * magnitude + 1.001 * filter->normal_error * reach +
-                   3.01 * (filter->normal_size + filter->normal_error) * off;
+                   3.01 * (filter->normal_size + filter->normal_error) * position_error(position);
     if (fabs(value) > error) return value > 0 ? 1 : -1;
     return 0;
 }
@@ -463,7 +475,7 @@ static int decide_crossing(enf_geometry *geometry, enf_crossing *crossing, int32
         geometry->decided[ENF_TIER_FILTER]++;
         return 0;
     }
-    bool located = crossing->located;
+    bool located = is_located(crossing);
     int sign = located ? side_of_position(geometry, crossing, plane, filter) : 0;
     bool on_edge = sign == 0 && holds_edge(geometry, crossing, plane);
     if (!located && !on_edge) {
@@ -593,10 +605,12 @@ bool enf_geometry_same_way(const enf_geometry *geometry, int32_t a, int32_t b) {
 
 void enf_geometry_position(enf_geometry *geometry, int32_t vertex, double position[3]) {
     const double *at = geometry->points + 3 * (size_t)vertex;
+    double weight = 1;
     if (vertex >= geometry->point_count) {
         enf_crossing *crossing = &geometry->crossings[vertex - geometry->point_count];
         locate(geometry, crossing);
-        at = crossing->position;
+        at = crossing->at;
+        weight = crossing->weight;
     }
-    for (int i = 0; i < 3; i++) position[i] = at[i];
+    for (int i = 0; i < 3; i++) position[i] = at[i] / weight;
 }

@@ -28,10 +28,9 @@ typedef struct enf_crossing {
     int32_t plane[3];
     int16_t at_unit, weight_unit;  ///< the true values are divisible by two to the power of these
     int8_t weight_sign;            ///< exact sign of the weight
-    bool located;                  ///< there is a position
+    bool located;                  ///< found by better arithmetic; the weight is 1 or -1
     double at[3], weight;          ///< the point is at / weight
     double at_error, weight_error; ///< 0: exact
-    double position[3];            ///< rounded; once it has been asked for, or the filter did not do
 } enf_crossing;
 
 /// What decides a predicate: doubles, pairs of doubles, whole numbers of any size.
@@ -106,8 +105,8 @@ int enf_geometry_dominant_axis(const enf_geometry *geometry, const int32_t point
 /// Do two planes of three points that are parallel face the same way? Exact.
 bool enf_geometry_same_way(const enf_geometry *geometry, int32_t a, int32_t b);
 
-/// The same from the filter alone: quick, for measuring, where a crossing of nearly parallel planes may be
-/// far off.
+/// The vertex's coordinates as far as they are known: quick, for measuring, where a crossing of nearly
+/// parallel planes may be far off.
 static inline void enf_geometry_near(const enf_geometry *geometry, int32_t vertex, double position[3]) {
     if (vertex < geometry->point_count) {
         for (int i = 0; i < 3; i++) position[i] = geometry->points[3 * (size_t)vertex + (size_t)i];
