@@ -71,9 +71,9 @@ static bool box_holds(const enf_file_box *outer, const enf_file_box *inner) {
     return true;
 }
 
-static bool box_holds_tetrahedron(const enf_file_view *view, const enf_file_box *box) {
+static bool box_holds_tetrahedron(const enf_file_view *view, const enf_file_box *box, int32_t tetrahedron) {
     for (int i = 0; i < 4; i++) {
-        const double *p = view->points[view->tetrahedra[box->tetrahedron][i]];
+        const double *p = view->points[view->tetrahedra[tetrahedron][i]];
         for (int a = 0; a < 3; a++) {
             if (p[a] < box->min[a] || p[a] > box->max[a]) return false;
         }
@@ -81,7 +81,7 @@ static bool box_holds_tetrahedron(const enf_file_view *view, const enf_file_box 
     return true;
 }
 
-/// Every tetrahedron has one leaf, which holds it, and every box lies in those around it.
+/// Every tetrahedron is in one leaf, which holds it, and every box lies in those around it.
 static bool check_box_tree(enf_checker *checker, int32_t *around, uint8_t *met) {
     const enf_file_view *view = checker->view;
     int32_t depth = 0;
@@ -93,9 +93,12 @@ static bool check_box_tree(enf_checker *checker, int32_t *around, uint8_t *met) 
             return enf_check_break(checker, "box %d reaches out of the box around it", (int)b);
         if (box->tetrahedron < 0) {
             around[depth++] = b;
-        } else if (met[box->tetrahedron]++ || !box_holds_tetrahedron(view, box)) {
-            return enf_check_break(checker, "box %d does not hold tetrahedron %d, or is not the only one",
-                                   (int)b, (int)box->tetrahedron);
+            continue;
+        }
+        for (int32_t t = box->tetrahedron; t < enf_file_box_end(box, view->tetrahedron_count); t++) {
+            if (met[t]++ || !box_holds_tetrahedron(view, box, t))
+                return enf_check_break(checker, "box %d does not hold tetrahedron %d, or is not the only one",
+                                       (int)b, (int)t);
         }
     }
     for (int32_t t = 0; t < view->tetrahedron_count; t++) {
@@ -107,7 +110,7 @@ static bool check_box_tree(enf_checker *checker, int32_t *around, uint8_t *met) 
 static void check_location(enf_checker *checker) {
     const enf_file_view *view = checker->view;
     enf_check_begin(checker, "file: location",
-                    "every tetrahedron is in one box, and every box in those around it");
+                    "every tetrahedron is in one leaf, and every box in those around it");
     int32_t *around = enf_array_new((size_t)view->box_count, sizeof *around);
     uint8_t *met = enf_array_zeroed((size_t)view->tetrahedron_count, 1);
     if (!around || !met) {

@@ -15,7 +15,7 @@
 /// Fitted over 25 Quake levels and offices of 50 thousand to 10 million polygons; the fourth leans upwards.
 static const double program_bytes = 6e6;         ///< the program itself, and small things
 static const double tetrahedra_per_point = 5.9;  ///< of points on surfaces; 4.8 to 6.3 were seen
-static const double bytes_per_tetrahedron = 545; ///< with all that is kept of points and polygons
+static const double bytes_per_tetrahedron = 530; ///< with all that is kept of points and polygons
 static const double bytes_per_cut = 3500;  ///< per triangle missing: the cells and facets that come of it
 static const double harmless_share = 0.14; ///< missing triangles per tetrahedron where nothing is cut
 /// Gaps between arrays, and ends of arrays that nothing is written to, as a share of the heap; and what lies

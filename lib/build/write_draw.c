@@ -346,8 +346,10 @@ static bool find_cells(detail_finder *f, int32_t index) {
             meets = meets && low[a] <= (double)box->max[a] && high[a] >= (double)box->min[a];
         i = meets ? i + 1 : box->next;
         if (!meets || box->tetrahedron < 0) continue;
-        if (is_apart(view, view->tetrahedra[box->tetrahedron], (const double(*)[3])at, 3)) continue;
-        if (!note_cells(f, box->tetrahedron, index)) return false;
+        for (int32_t t = box->tetrahedron; t < enf_file_box_end(box, view->tetrahedron_count); t++) {
+            if (is_apart(view, view->tetrahedra[t], (const double(*)[3])at, 3)) continue;
+            if (!note_cells(f, t, index)) return false;
+        }
     }
     return true;
 }

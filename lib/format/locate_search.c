@@ -10,26 +10,37 @@ static bool box_holds(const enf_file_box *box, const double at[3]) {
            at[2] >= box->min[2] && at[2] <= box->max[2];
 }
 
-/// The next tetrahedron whose box holds a point of the grid, from box *next on; -1: none.
-static int32_t next_candidate(const enf_file_view *view, const double grid[3], int32_t *next) {
-    while (*next < view->box_count) {
-        const enf_file_box *box = &view->boxes[*next];
-        bool inside = box_holds(box, grid);
-        *next = inside ? *next + 1 : box->next;
-        if (inside && box->tetrahedron >= 0) return box->tetrahedron;
-    }
-    return -1;
+/// A walk along the boxes that hold a point.
+typedef struct search {
+    const enf_file_view *view;
+    double grid[3];
+    int32_t next;             ///< box
+    int32_t tetrahedron, end; ///< left of a leaf
+} search;
+
+static search search_for(const enf_locating *point) {
+    search search = {.view = point->view};
+    for (int a = 0; a < 3; a++) search.grid[a] = point->at[a] / point->view->frame->locate_scale;
+    return search;
 }
 
-static void to_grid(const enf_locating *point, double grid[3]) {
-    for (int a = 0; a < 3; a++) grid[a] = point->at[a] / point->view->frame->locate_scale;
+/// The next tetrahedron of a leaf whose box holds the point; -1: none.
+static int32_t next_candidate(search *search) {
+    while (search->tetrahedron == search->end && search->next < search->view->box_count) {
+        const enf_file_box *box = &search->view->boxes[search->next];
+        bool inside = box_holds(box, search->grid);
+        search->next = inside ? search->next + 1 : box->next;
+        if (!inside || box->tetrahedron < 0) continue;
+        search->tetrahedron = box->tetrahedron;
+        search->end = enf_file_box_end(box, search->view->tetrahedron_count);
+    }
+    return search->tetrahedron < search->end ? search->tetrahedron++ : -1;
 }
 
 void enf_locating_search(enf_locating *point) {
-    double grid[3];
-    int32_t next = 0, tetrahedron;
-    to_grid(point, grid);
-    while ((tetrahedron = next_candidate(point->view, grid, &next)) >= 0) {
+    search search = search_for(point);
+    int32_t tetrahedron;
+    while ((tetrahedron = next_candidate(&search)) >= 0) {
         int away, side = enf_locating_side(point, tetrahedron, 0, 0, &away);
         if (side >= 0) enf_locating_descend(point, tetrahedron);
         if (side > 0) return;
@@ -153,10 +164,9 @@ static void challenge(nearest *best, double distance, int32_t tetrahedron) {
 
 void enf_locating_search_nearest(enf_locating *point) {
     nearest best = {point->view->frame->locate_rounding, -1};
-    double grid[3];
-    int32_t next = 0, tetrahedron;
-    to_grid(point, grid);
-    while ((tetrahedron = next_candidate(point->view, grid, &next)) >= 0)
+    search search = search_for(point);
+    int32_t tetrahedron;
+    while ((tetrahedron = next_candidate(&search)) >= 0)
         challenge(&best, outside_distance(point, tetrahedron), tetrahedron);
     if (best.tetrahedron >= 0) enf_locating_descend(point, best.tetrahedron);
 }

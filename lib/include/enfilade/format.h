@@ -143,13 +143,21 @@ typedef struct enf_file_pvs {
     int64_t pairs; ///< directed, every cell with itself included
 } enf_file_pvs;
 
+enum { ENF_FILE_BOX_TETRAHEDRA = 8 }; ///< so many are in a leaf of the hierarchy of boxes; fewer in the last
+
 /// A node of the bounding volume hierarchy over tetrahedra, in depth-first order: walk forward, and where the
-/// point is outside the box jump to `next`. A leaf holds one tetrahedron.
+/// point is outside the box jump to `next`. A leaf holds tetrahedra with consecutive numbers.
 typedef struct enf_file_box {
     float min[3], max[3]; ///< grid steps, rounded outwards
     int32_t next;         ///< > this node's number, <= box_count
-    int32_t tetrahedron;  ///< -1: not a leaf
+    int32_t tetrahedron;  ///< the first one; -1: not a leaf
 } enf_file_box;
+
+/// The number after the last tetrahedron of a leaf, where there are `count` in all.
+static inline int32_t enf_file_box_end(const enf_file_box *leaf, int32_t count) {
+    const int32_t left = count - leaf->tetrahedron;
+    return leaf->tetrahedron + (left < ENF_FILE_BOX_TETRAHEDRA ? left : ENF_FILE_BOX_TETRAHEDRA);
+}
 
 /// A box of equal bricks, count[0] * count[1] * count[2] of them; the last axis runs fastest. Each knows a
 /// tetrahedron from which it is not far to the points in it.
