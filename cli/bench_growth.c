@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How time and memory grow with the world, and what a second thread gains. Every run is a process of its own.
-// A machine that others share is faster at some times than at others, for seconds or minutes. So the sizes
-// take turns, round after round; in a round a small world is compiled again and again for as long as a large
-// one takes, so that its median, like the large one's, is of fast and slow moments; and runs with one thread
-// and with several alternate. The memory that a run will take is in its heap before the clocks start; what it
-// takes is measured by one more run, without that.
+// How time and memory grow with the world, and what a second thread gains. A machine that others share is
+// faster at some times than at others, for seconds or minutes. So the sizes take turns, round after round,
+// and in a round a small world is compiled again and again for as long as a large one takes: its median, like
+// the large one's, is of fast and slow moments. Every compile is a process of its own. In turn they have the
+// memory that they will take in their heap before the clocks start, and get it as they go: the first tells
+// what the work costs, the second adds what the system takes for memory, which a host may give slowly. What
+// threads gain is measured in one process, which splits the same world again and again, with one thread and
+// with several.
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE // asprintf
 #endif
@@ -65,9 +67,9 @@ enum {
     PEAK,
     EXACT,
     CLOCK,
+    MEASURED, ///< so many columns come from a compile
+    FRESH = MEASURED,
     SPLIT_CLOCK,
-    MEASURED, ///< so many columns come from a run with one thread; the next from one with several
-    CLOCK_THREADS = MEASURED,
     SPLIT_CLOCK_THREADS,
     SPLIT_GAIN,
     COLUMN_COUNT
@@ -77,23 +79,29 @@ static const struct column {
     const char *name;
     int digits; ///< after the point
 } columns[COLUMN_COUNT] = {
-    {"polygons", 0},    {"tetrahedra", 0}, {"fine_cells", 0},    {"cells", 0},     {"read_s", 3},
-    {"clean_s", 3},     {"delaunay_s", 3}, {"split_s", 3},       {"connect_s", 3}, {"colour_s", 3},
-    {"decimate_s", 3},  {"portals_s", 3},  {"write_s", 3},       {"total_s", 2},   {"peak_mb", 0},
-    {"exact_share", 5}, {"clock_s", 2},    {"split_clock_s", 3}, {"clock_N_s", 2}, {"split_clock_N_s", 3},
+    {"polygons", 0},    {"tetrahedra", 0}, {"fine_cells", 0},    {"cells", 0},         {"read_s", 3},
+    {"clean_s", 3},     {"delaunay_s", 3}, {"split_s", 3},       {"connect_s", 3},     {"colour_s", 3},
+    {"decimate_s", 3},  {"portals_s", 3},  {"write_s", 3},       {"total_s", 2},       {"peak_mb", 0},
+    {"exact_share", 5}, {"clock_s", 2},    {"fresh_total_s", 2}, {"split_clock_s", 3}, {"split_clock_N_s", 3},
     {"split_gain", 2},
 };
+
+/// A process splits a world with one thread and with several: once to warm up, then so often.
+enum { PAIRS_LEAST = 2, PAIRS_MOST = 64 };
 
 /// What a child is told, and what it says.
 typedef struct run {
     const char *world, *output;
-    int threads;
     uint64_t touched; ///< bytes of the heap, before the clocks start
+    int threads;      ///< of the second splits
+    double seconds;   ///< to spend on splits
     double column[MEASURED];
+    double pair[PAIRS_MOST][2]; ///< seconds by the clock of a split with one thread, with several
+    int pair_count;
     enf_error error;
 } run;
 
-/// What all runs of one world with so many threads have said.
+/// What all compiles of one world have said.
 typedef struct series {
     double (*columns)[MEASURED]; ///< of each run
     size_t count, capacity;
@@ -102,8 +110,9 @@ typedef struct series {
 typedef struct row {
     const struct world *world;
     char *file, *output; ///< the world, while it is there; what it is compiled to
-    series one, several; ///< runs with one thread and with several
-    double peak_mb;
+    series touched, fresh;
+    double (*pairs)[2];
+    size_t pair_count, pair_capacity;
     double column[COLUMN_COUNT];
 } row;
 
@@ -132,39 +141,74 @@ static void take_columns(const cli_job *job, double *column) {
         column[TOTAL] += column[STAGE + i];
     }
     column[CLOCK] = job->seconds + job->write.seconds;
-    column[SPLIT_CLOCK] = build->stages[ENF_STAGE_SPLIT].seconds;
     column[PEAK] = (double)job->write.peak_bytes / 1e6;
     column[EXACT] = enf_complex_tier_share(&build->complex, ENF_TIER_EXACT);
 }
 
-/// In the child: what `enfilade compile` does.
+/// Reads the world and runs the first stages, all if `stages` is 0.
+static enf_status run_stages(cli_job *job, const cli_settings *settings, const char *world, int stages,
+                             enf_error *error) {
+    cli_texts inputs = {0};
+    enf_status status = cli_texts_add(&inputs, world) ? ENF_OK : enf_fail_memory(error, "a list");
+    if (!status) status = cli_job_prepare(job, settings, error);
+    job->options.stages = stages;
+    if (!status) status = cli_job_run(job, &inputs, NULL, error);
+    free(inputs.items);
+    return status;
+}
+
+/// In a child: what `enfilade compile` does.
 static void compile_world(void *shared) {
     run *run = shared;
     cli_settings settings = cli_settings_default();
-    settings.threads = run->threads;
+    settings.threads = 1;
     if (run->touched > 0) cli_heap_touch(run->touched);
     cli_job job = {0};
-    cli_texts inputs = {0};
-    enf_status status = cli_texts_add(&inputs, run->world) ? ENF_OK : enf_fail_memory(&run->error, "a list");
-    if (!status) status = cli_job_prepare(&job, &settings, &run->error);
-    if (!status) status = cli_job_run(&job, &inputs, NULL, &run->error);
+    enf_status status = run_stages(&job, &settings, run->world, 0, &run->error);
     double started = enf_timer_now(), cpu_started = enf_timer_cpu();
     if (!status) status = enf_build_write(&job.build, job.options_json, run->output, &run->error);
     cli_stage_end(&job.write, started, cpu_started);
     if (!status) take_columns(&job, run->column);
     cli_job_free(&job);
-    free(inputs.items);
     cli_settings_free(&settings);
 }
 
-static enf_status run_child(run *run, const row *row, int threads, uint64_t touched, enf_error *error) {
+static enf_status split_once(const run *run, int threads, double *seconds, enf_error *error) {
+    cli_settings settings = cli_settings_default();
+    settings.threads = threads;
+    cli_job job = {0};
+    enf_status status = run_stages(&job, &settings, run->world, ENF_STAGE_SPLIT + 1, error);
+    *seconds = job.build.stages[ENF_STAGE_SPLIT].seconds;
+    cli_job_free(&job);
+    cli_settings_free(&settings);
+    return status;
+}
+
+/// In a child.
+static void split_in_turns(void *shared) {
+    run *run = shared;
+    enf_status status = ENF_OK;
+    const double started = enf_timer_now();
+    for (int i = -1; !status && i < PAIRS_MOST; i++) {
+        if (i >= PAIRS_LEAST && enf_timer_now() - started > run->seconds) break;
+        double *pair = run->pair[i < 0 ? 0 : i];
+        status = split_once(run, 1, &pair[0], &run->error);
+        if (!status) status = split_once(run, run->threads, &pair[1], &run->error);
+        run->pair_count = i + 1;
+    }
+}
+
+static enf_status run_child(const table *table, const row *row, void (*work)(void *), uint64_t touched,
+                            enf_error *error) {
     cli_child child;
+    run *run = table->shared;
     memset(run, 0, sizeof *run);
     run->world = row->file;
     run->output = row->output;
-    run->threads = threads;
+    run->threads = table->threads;
+    run->seconds = table->seconds;
     run->touched = touched;
-    enf_status status = cli_child_run(compile_world, run, CHILD_SECONDS, 0, &child, error);
+    enf_status status = cli_child_run(work, run, CHILD_SECONDS, 0, &child, error);
     unlink(run->output);
     if (status) return status;
     if (child.signal) return enf_fail(error, ENF_NO_RESOURCES, "killed by signal %d", child.signal);
@@ -174,56 +218,62 @@ static enf_status run_child(run *run, const row *row, int threads, uint64_t touc
 
 // ---------------------------------------------------------------------------------------------- one world
 
-static enf_status add_run(run *run, series *series, const row *row, int threads, enf_error *error) {
+static enf_status add_compile(const table *table, const row *row, series *series, uint64_t touched,
+                              enf_error *error) {
     if (!enf_array_reserve(series->columns, series->capacity, series->count + 1))
         return enf_fail_memory(error, "a run");
-    uint64_t touched = (uint64_t)(row->world->polygons * POLYGON_BYTES);
-    enf_status status = run_child(run, row, threads, touched, error);
-    if (!status) memcpy(series->columns[series->count++], run->column, sizeof run->column);
+    enf_status status = run_child(table, row, compile_world, touched, error);
+    if (!status)
+        memcpy(series->columns[series->count++], table->shared->column, sizeof table->shared->column);
     return status;
 }
 
-/// What a compile takes if nothing was in the heap before it.
-static enf_status measure_peak(const table *table, row *row, enf_error *error) {
-    enf_status status = run_child(table->shared, row, 1, 0, error);
-    row->peak_mb = table->shared->column[PEAK];
+static enf_status add_splits(const table *table, row *row, enf_error *error) {
+    enf_status status = run_child(table, row, split_in_turns, 0, error);
+    const size_t more = status ? 0 : (size_t)table->shared->pair_count;
+    if (!enf_array_reserve(row->pairs, row->pair_capacity, row->pair_count + more))
+        return enf_fail_memory(error, "splits");
+    if (more > 0) memcpy(row->pairs + row->pair_count, table->shared->pair, more * sizeof *row->pairs);
+    row->pair_count += more;
     return status;
 }
 
-/// A round of one world: runs until `seconds` have passed, one at least.
+/// A round of one world: compiles until `seconds` have passed, one of each kind at least.
 static enf_status run_round(const table *table, row *row, enf_error *error) {
-    enf_status status = row->one.count > 0 ? ENF_OK : measure_peak(table, row, error);
-    if (status) return status;
     const double started = enf_timer_now();
+    enf_status status = ENF_OK;
     do {
-        status = add_run(table->shared, &row->one, row, 1, error);
-        if (!status && table->threads > 1)
-            status = add_run(table->shared, &row->several, row, table->threads, error);
+        status =
+            add_compile(table, row, &row->touched, (uint64_t)(row->world->polygons * POLYGON_BYTES), error);
+        if (!status) status = add_compile(table, row, &row->fresh, 0, error);
     } while (!status && enf_timer_now() - started < table->seconds);
+    if (!status && table->threads > 1) status = add_splits(table, row, error);
     return status;
 }
 
-static bool find_median(const series *series, int column, double *median) {
-    double *values = enf_array_new(series->count, sizeof *values);
-    if (!values) return false;
+static double find_median(const series *series, int column, double *values) {
     for (size_t i = 0; i < series->count; i++) values[i] = series->columns[i][column];
-    *median = cli_median(values, series->count);
-    free(values);
-    return true;
+    return cli_median(values, series->count);
 }
 
-static enf_status take_medians(const table *table, row *row, enf_error *error) {
-    bool found = true;
-    for (int c = 0; c < MEASURED; c++) found = found && find_median(&row->one, c, &row->column[c]);
-    row->column[PEAK] = row->peak_mb;
-    double *of_several = &row->column[CLOCK_THREADS];
-    of_several[0] = of_several[1] = row->column[SPLIT_GAIN] = NAN;
-    if (table->threads > 1) {
-        found = found && find_median(&row->several, CLOCK, &of_several[0]) &&
-                find_median(&row->several, SPLIT_CLOCK, &of_several[1]);
-        row->column[SPLIT_GAIN] = row->column[SPLIT_CLOCK] / row->column[SPLIT_CLOCK_THREADS];
+/// Of one clock of the pairs, or of their ratios.
+static double find_pair_median(const row *row, int column, double *values) {
+    for (size_t i = 0; i < row->pair_count; i++) {
+        const double *pair = row->pairs[i];
+        values[i] = column == SPLIT_GAIN ? pair[0] / pair[1] : pair[column == SPLIT_CLOCK_THREADS];
     }
-    return found ? ENF_OK : enf_fail_memory(error, "a median");
+    return row->pair_count > 0 ? cli_median(values, row->pair_count) : NAN;
+}
+
+static enf_status take_medians(row *row, enf_error *error) {
+    double *values = enf_array_new(row->touched.count + row->pair_count, sizeof *values);
+    if (!values) return enf_fail_memory(error, "a median");
+    for (int c = 0; c < MEASURED; c++) row->column[c] = find_median(&row->touched, c, values);
+    row->column[PEAK] = find_median(&row->fresh, PEAK, values);
+    row->column[FRESH] = find_median(&row->fresh, TOTAL, values);
+    for (int c = SPLIT_CLOCK; c <= SPLIT_GAIN; c++) row->column[c] = find_pair_median(row, c, values);
+    free(values);
+    return ENF_OK;
 }
 
 static enf_status make_row(row *row, const struct world *world, enf_error *error) {
@@ -239,8 +289,9 @@ static enf_status make_row(row *row, const struct world *world, enf_error *error
 static void free_row(row *row) {
     cli_world_remove(row->file);
     free(row->output);
-    free(row->one.columns);
-    free(row->several.columns);
+    free(row->touched.columns);
+    free(row->fresh.columns);
+    free(row->pairs);
 }
 
 // ---------------------------------------------------------------------------------------------- printing
@@ -261,10 +312,10 @@ static void print_row(const row *row) {
 }
 
 /// The slope of log time over log polygons, by least squares; NaN for fewer than two sizes.
-static double fit_exponent(const row *rows, int count) {
+static double fit_exponent(const row *rows, int count, int column) {
     double x = 0, y = 0, xx = 0, xy = 0;
     for (int i = 0; i < count; i++) {
-        double u = log(rows[i].column[POLYGONS]), v = log(rows[i].column[TOTAL]);
+        double u = log(rows[i].column[POLYGONS]), v = log(rows[i].column[column]);
         x += u, y += v, xx += u * u, xy += u * v;
     }
     return count < 2 ? NAN : (count * xy - x * y) / (count * xx - x * x);
@@ -278,18 +329,21 @@ static const char *verdict(bool met) {
 static void judge_family(const table *table, const row *rows, int count) {
     const row *last = &rows[count - 1];
     const char *family = last->world->family;
-    double exponent = fit_exponent(rows, count);
+    double work = fit_exponent(rows, count, TOTAL), all = fit_exponent(rows, count, FRESH);
     if (count < 2)
         printf("%s: one size alone has no exponent\n", family);
     else
-        printf(
-            "%s: time grows like polygons to the power of %.3f (%d sizes, processor time of one thread); at "
-            "most %.1f: %s\n",
-            family, exponent, count, exponent_most, verdict(exponent <= exponent_most));
+        printf("%s: time grows like polygons to the power of %.3f, with what the system takes for memory "
+               "%.3f (%d "
+               "sizes, processor time of one thread); at most %.1f: %s\n",
+               family, work, all, count, exponent_most,
+               verdict(work <= exponent_most && all <= exponent_most));
     if (last->column[POLYGONS] >= near_million * million)
-        printf("%s: %.0f polygons take one core %.1f s (%.1f s by the clock); at most %.0f s: %s\n", family,
-               last->column[POLYGONS], last->column[TOTAL], last->column[CLOCK], million_seconds,
-               verdict(last->column[TOTAL] <= million_seconds));
+        printf(
+            "%s: %.0f polygons take one core %.1f s (%.1f s with what the system takes for memory); at most "
+            "%.0f s: %s\n",
+            family, last->column[POLYGONS], last->column[TOTAL], last->column[FRESH], million_seconds,
+            verdict(last->column[FRESH] <= million_seconds));
     if (table->threads == 1) return;
     printf("%s: splitting the largest is %.2f times as fast with %d threads as with one; at least %.1f with "
            "two: %s\n",
@@ -330,7 +384,7 @@ static enf_status run_worlds(table *table, enf_error *error) {
         for (int i = 0; i < table->count && !status; i++) status = run_round(table, &table->rows[i], error);
     if (!status) print_head();
     for (int i = 0; i < table->count && !status; i++) {
-        status = take_medians(table, &table->rows[i], error);
+        status = take_medians(&table->rows[i], error);
         if (!status) print_row(&table->rows[i]);
     }
     return status;
@@ -362,11 +416,16 @@ int cli_bench_growth(int argc, char **argv) {
         .usage = "[--threads N] [--runs N] [--seconds S] [--largest N] [--worlds GLOB]",
         .summary =
             "Offices and caverns of about 10^4, 3*10^4, 10^5, 3*10^5 and 10^6 polygons, read, compiled and\n"
-            "written, on one thread and (columns with _N) on several: medians of all runs of all rounds.\n"
-            "Stages and total_s are processor seconds of one thread, clock_s and split_clock_s go by the\n"
-            "clock; a process has its memory (up to 2 GiB) before they start. exact_share is of the\n"
-            "predicates that only whole numbers could decide. CSV, at the end;\n"
-            "then, in words, how time grows with the polygons, and whether the bars are met.",
+            "written on one thread: medians of all runs of all rounds. Stages and total_s are processor\n"
+            "seconds; a process has its memory (up to 2 GiB) before they start, but for fresh_total_s and\n"
+            "peak_mb. exact_share is of the predicates that only whole numbers could decide. clock_s goes "
+            "by\n"
+            "the clock, and so do split_clock_s and split_clock_N_s: the split stage with one thread and "
+            "with\n"
+            "several, in turn, in a process that has split the world before; split_gain is the median of "
+            "the\n"
+            "ratios of two in a row. CSV, at the end; then, in words, how time grows with the polygons, and\n"
+            "whether the bars are met.",
         .options = options};
     cli_texts operands = {0};
     enf_error error = {0};
