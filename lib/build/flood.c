@@ -7,6 +7,7 @@
 
 #include "base/array.h"
 #include "base/exact.h"
+#include "base/fetch.h"
 #include "build/polygon_lines.h"
 
 #include <stdlib.h>
@@ -159,8 +160,10 @@ static bool facet_separates(const flooder *w, const int32_t corner[4], const sta
 // ---------------------------------------------------------------------------------------------- one polygon
 
 /// How the polygon's inside meets a tetrahedron, which is taken down where that matters later.
-static contact visit(flooder *w, flood_block *block, const enf_tet_mesh *tets, int32_t t,
-                     const int32_t corner[4], stance *at) {
+static contact visit(flooder *w, flood_block *block, const enf_tet_mesh *tets, int32_t t, const place *here,
+                     stance *at) {
+    const int32_t *corner = here->corner;
+    enf_fetch(tets->facets[t]);
     contact how = meets(w, corner, at);
     if (how == ACROSS) {
         uint32_t near = at->outside[0] | at->outside[1] | at->outside[2] | at->outside[3];
@@ -170,8 +173,8 @@ static contact visit(flooder *w, flood_block *block, const enf_tet_mesh *tets, i
         int opposite = __builtin_ctz(at->behind | at->front);
         uint32_t near = 0;
         for (int k = 0; k < 4; k++) near |= k == opposite ? 0 : at->outside[k];
-        const int32_t facet = tets->facets[t][opposite], *sides = tets->facet_sides[facet];
-        if (sides[0] == t || sides[0] < 0) add_hit(w, block, facet, near);
+        // The tetrahedron on the other side is visited, too.
+        if (here->next[opposite] < t) add_hit(w, block, tets->facets[t][opposite], near);
     }
     return how;
 }
@@ -234,7 +237,7 @@ static void flood_polygon(flooder *w, flood_block *block, const enf_tet_mesh *te
         int32_t t = w->stack[--depth];
         stance at = {0};
         const place *here = &places[t];
-        if (visit(w, block, tets, t, here->corner, &at) == APART) continue;
+        if (visit(w, block, tets, t, here, &at) == APART) continue;
         if (!reserve_stack(w, depth)) return;
         for (int k = 0; k < 4; k++) {
             int32_t next = here->next[k];
@@ -264,14 +267,31 @@ static void take_polygon(flooder *w, flood_block *block, const flood *all, int32
 
 // ---------------------------------------------------------------------------------------------- all of them
 
+enum { FETCH_STEPS = 3, FETCH_AHEAD = 8 }; ///< so many polygons pass between two steps
+
+/// Polygons come in the order of their planes; where they and their facets lie follows none.
+static void fetch_polygons(const flood *all, size_t rank, size_t end) {
+    const enf_mesh *mesh = all->arrangement->mesh;
+    for (int step = 0; step < FETCH_STEPS; step++) {
+        const size_t ahead = rank + (size_t)((FETCH_STEPS - step) * FETCH_AHEAD);
+        if (ahead >= end) continue;
+        const int32_t polygon = all->order[ahead];
+        const int32_t *corners = mesh->corners + mesh->polygon_corner[polygon];
+        const int64_t last = mesh->polygon_corner[polygon + 1] - mesh->polygon_corner[polygon] - 1;
+        enf_tet_mesh_fetch_facet(&all->arrangement->tets, corners[0], corners[1], corners[last], step);
+    }
+}
+
 static void flood_job(void *user, int32_t index, int thread) {
     flood *all = user;
     flooder *w = &all->flooders[thread];
     size_t end = ((size_t)index + 1) * BLOCK;
     if (end > all->arrangement->mesh->polygon_count) end = all->arrangement->mesh->polygon_count;
     flood_block block = {0}; // here: threads that write close to each other wait for each other
-    for (size_t i = (size_t)index * BLOCK; i < end && !w->failed; i++)
+    for (size_t i = (size_t)index * BLOCK; i < end && !w->failed; i++) {
+        fetch_polygons(all, i, end);
         take_polygon(w, &block, all, all->order[w->rank = (int32_t)i]);
+    }
     all->blocks[index] = block;
 }
 

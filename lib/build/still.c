@@ -4,6 +4,7 @@
 #include "build/still.h"
 
 #include "base/array.h"
+#include "base/fetch.h"
 #include "build/subdivision.h"
 
 #include <stdlib.h>
@@ -81,11 +82,22 @@ static int32_t fill_facet(const still *all, int32_t source, int32_t added, int32
     return after;
 }
 
+enum { AHEAD = 16 }; ///< facets
+
+/// What fill_facet will read.
+static void fetch_facet(const enf_tet_mesh *tets, int32_t facet) {
+    const int32_t *sides = tets->facet_sides[facet], t = sides[0] >= 0 ? sides[0] : sides[1];
+    enf_fetch(tets->corners[t]);
+    enf_fetch(tets->facets[t]);
+}
+
 static void fill_block(void *user, int32_t block, int thread) {
     (void)thread;
     still *all = user;
     place at = all->places[block];
-    for (int32_t f = block * BLOCK; f < block_end(all, block); f++) {
+    const int32_t end = block_end(all, block);
+    for (int32_t f = block * BLOCK; f < end; f++) {
+        if (f + AHEAD < end) fetch_facet(&all->arrangement->tets, f + AHEAD);
         if (!all->marked[f]) at.cover = fill_facet(all, f, at.facet++, at.cover);
     }
 }

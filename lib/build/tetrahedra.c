@@ -2,6 +2,7 @@
 #include "build/tetrahedra.h"
 
 #include "base/array.h"
+#include "base/fetch.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -44,12 +45,17 @@ static uint32_t hash_edge(int32_t a, int32_t b) {
     return (uint32_t)((((uint64_t)(uint32_t)a << 32 | (uint32_t)b) * UINT64_C(0x9E3779B97F4A7C15)) >> 32);
 }
 
+/// Where the face would best lie among the slots of its lowest corner.
+static inline uint32_t home_of(const int32_t face[3], uint32_t count) {
+    return (uint32_t)((uint64_t)hash_edge(face[1], face[2]) * count >> 32);
+}
+
 /// The slot of the face with these ascending corners, or where it would be. The lowest corner says where to
 /// look, so that faces that are near in space are near in memory.
 static inline int32_t *slot_of(const enf_tet_mesh *mesh, const int32_t face[3]) {
     int32_t *slots = mesh->slots + mesh->slot_begin[face[0]];
     const uint32_t count = mesh->slot_begin[face[0] + 1] - mesh->slot_begin[face[0]];
-    uint32_t at = (uint32_t)((uint64_t)hash_edge(face[1], face[2]) * count >> 32);
+    uint32_t at = home_of(face, count);
     for (int32_t facet; (facet = slots[at]) >= 0; at = at + 1 < count ? at + 1 : 0) {
         const int32_t *corner = mesh->facet_corners[facet];
         if (corner[1] == face[1] && corner[2] == face[2] && corner[0] == face[0]) break;
@@ -62,6 +68,22 @@ int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32
     int32_t face[3];
     enf_tetrahedron_face(corners, 3, face);
     return *slot_of(mesh, face);
+}
+
+void enf_tet_mesh_fetch_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c, int step) {
+    const int32_t corners[4] = {a, b, c, -1};
+    int32_t face[3];
+    enf_tetrahedron_face(corners, 3, face);
+    const uint32_t *begin = &mesh->slot_begin[face[0]];
+    if (step == 0) {
+        enf_fetch(begin);
+        return;
+    }
+    const int32_t *slot = mesh->slots + begin[0] + home_of(face, begin[1] - begin[0]);
+    if (step == 1)
+        enf_fetch(slot);
+    else if (*slot >= 0)
+        enf_fetch(mesh->facet_corners[*slot]);
 }
 
 enum { SPARE_SLOTS = 6 }; ///< at each corner, one of them for good: facets that flips make seldom need more

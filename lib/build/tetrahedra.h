@@ -48,6 +48,10 @@ void enf_tet_mesh_unlist(enf_tet_mesh *mesh);
 /// The facet with these three corners, in any order, or -1.
 int32_t enf_tet_mesh_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c);
 
+/// Brings a facet that will be looked for near the processor, in steps 0, 1 and 2, each some time after the
+/// one before.
+void enf_tet_mesh_fetch_facet(const enf_tet_mesh *mesh, int32_t a, int32_t b, int32_t c, int step);
+
 enum { ENF_TILING_CORNERS_MAX = 16 }; ///< of polygons with more it is not asked
 
 /// The facets that tile a polygon, where the triangulation carries it already: facets do not overlap, so
