@@ -6,6 +6,7 @@
 #include "base/exact.h"
 #include "base/narrow.h"
 #include "enfilade/run.h"
+#include "format/locate.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -86,6 +87,13 @@ static int32_t locate_by_looking_everywhere(const fixture *f, const int64_t at[3
     return best;
 }
 
+/// Without bricks and a hint there is nothing to walk from: the boxes must find the same.
+static enf_place locate_by_boxes(const opened *o, const double world[3]) {
+    enf_file_view file = *enf_world_file(o->world);
+    file.start = NULL;
+    return enf_view_locate(&file, world, -1);
+}
+
 static void check_point(const opened *o, const int64_t at[3], int32_t hint) {
     double grid[3], world[3];
     for (int a = 0; a < 3; a++) grid[a] = (double)at[a] / FINE_GRID;
@@ -95,6 +103,7 @@ static void check_point(const opened *o, const int64_t at[3], int32_t hint) {
     if (place.fine_cell != expected)
         fail_msg("at %g %g %g (hint %d): fine cell %d, not %d", grid[0], grid[1], grid[2], hint,
                  place.fine_cell, expected);
+    assert_int_equal(locate_by_boxes(o, world).fine_cell, expected);
     const enf_build *build = &o->fixture.build;
     assert_int_equal(place.cell, expected < 0 ? -1 : build->cell_of[expected]);
     assert_int_equal(place.tetrahedron < 0, expected < 0);
@@ -210,8 +219,10 @@ static void just_outside_the_hull_is_inside_and_further_out_is_not(void **state)
     assert_true(margin > 0 && margin < 1e-14);
     double at[3] = {0.3, 0.6, -margin / 2};
     assert_int_equal(enf_world_locate(o.world, at, -1).cell, 0);
+    assert_int_equal(locate_by_boxes(&o, at).cell, 0);
     at[2] = -margin * 4;
     assert_int_equal(enf_world_locate(o.world, at, -1).fine_cell, -1);
+    assert_int_equal(locate_by_boxes(&o, at).fine_cell, -1);
     at[2] = 0;
     assert_int_equal(enf_world_locate(o.world, at, -1).cell, 0);
     close_fixture(&o);
