@@ -334,8 +334,7 @@ static void judge_family(const table *table, const row *rows, int count) {
         printf("%s: one size alone has no exponent\n", family);
     else
         printf("%s: time grows like polygons to the power of %.3f, with what the system takes for memory "
-               "%.3f (%d "
-               "sizes, processor time of one thread); at most %.1f: %s\n",
+               "%.3f (%d sizes, processor time of one thread); at most %.1f: %s\n",
                family, work, all, count, exponent_most,
                verdict(work <= exponent_most && all <= exponent_most));
     if (last->column[POLYGONS] >= near_million * million)
@@ -417,15 +416,12 @@ int cli_bench_growth(int argc, char **argv) {
         .summary =
             "Offices and caverns of about 10^4, 3*10^4, 10^5, 3*10^5 and 10^6 polygons, read, compiled and\n"
             "written on one thread: medians of all runs of all rounds. Stages and total_s are processor\n"
-            "seconds; a process has its memory (up to 2 GiB) before they start, but for fresh_total_s and\n"
-            "peak_mb. exact_share is of the predicates that only whole numbers could decide. clock_s goes "
-            "by\n"
-            "the clock, and so do split_clock_s and split_clock_N_s: the split stage with one thread and "
-            "with\n"
-            "several, in turn, in a process that has split the world before; split_gain is the median of "
-            "the\n"
-            "ratios of two in a row. CSV, at the end; then, in words, how time grows with the polygons, and\n"
-            "whether the bars are met.",
+            "seconds; a process has its memory (up to 2 GiB) before they start, but for fresh_total_s\n"
+            "and peak_mb. exact_share is of the predicates that only whole numbers could decide.\n"
+            "clock_s goes by the clock, and so do split_clock_s and split_clock_N_s: the split stage with\n"
+            "one thread and with several, in turn, in a process that has split the world before;\n"
+            "split_gain is the median of the ratios of two in a row. CSV, at the end; then, in words, how\n"
+            "time grows with the polygons, and whether the bars are met.",
         .options = options};
     cli_texts operands = {0};
     enf_error error = {0};
