@@ -311,30 +311,46 @@ int32_t enf_geometry_cross(enf_geometry *geometry, int32_t a, int32_t b, int32_t
 // ---------------------------------------------------------------------------------------------- the
 // predicate
 
-/// enf_points_orient, counted.
-static int orient(enf_geometry *geometry, const double *p, const double *q, const double *r,
-                  const double *x) {
-    int side = enf_points_orient_quickly(p, q, r, x);
-    geometry->decided[side == ENF_UNSURE ? ENF_TIER_EXACT : ENF_TIER_FILTER]++;
-    return side == ENF_UNSURE ? enf_points_orient_exactly(p, q, r, x) : side;
+/// A point against a plane in exact arithmetic, or as that found a while ago.
+static int decide_exactly(enf_geometry *geometry, int32_t point, int32_t plane, const double *third) {
+    const int32_t *defined = geometry->planes[plane];
+    const double *at = geometry->points;
+    uint32_t slot = ((uint32_t)point * UINT32_C(0x9E3779B1) ^ (uint32_t)plane) % ENF_SIDES_KEPT;
+    enf_kept_side *known = geometry->kept ? &geometry->kept->side[slot] : NULL;
+    if (known && known->plane == plane + 1 && known->point == point) return known->side;
+    geometry->decided[ENF_TIER_EXACT]++;
+    int side = enf_points_orient_exactly(at + 3 * (size_t)defined[0], at + 3 * (size_t)defined[1], third,
+                                         at + 3 * (size_t)point);
+    if (known) *known = (enf_kept_side){plane + 1, point, side};
+    return side;
+}
+
+/// A point against a plane that `third` is in besides the two points that all planes have.
+static int orient(enf_geometry *geometry, int32_t point, int32_t plane, const double *third) {
+    const int32_t *defined = geometry->planes[plane];
+    const double *at = geometry->points;
+    int side = enf_points_orient_quickly(at + 3 * (size_t)defined[0], at + 3 * (size_t)defined[1], third,
+                                         at + 3 * (size_t)point);
+    if (side == ENF_UNSURE) return decide_exactly(geometry, point, plane, third);
+    geometry->decided[ENF_TIER_FILTER]++;
+    return side;
 }
 
 /// Where rounding may hide the side.
-static int decide_point(enf_geometry *geometry, const double *x, int32_t plane,
-                        const enf_plane_filter *filter, double value, double magnitude) {
+static int decide_point(enf_geometry *geometry, int32_t point, int32_t plane, const enf_plane_filter *filter,
+                        double value, double magnitude) {
     const int32_t *defined = geometry->planes[plane];
-    const double *p = geometry->points + 3 * (size_t)defined[0],
-                 *q = geometry->points + 3 * (size_t)defined[1];
+    const double *x = geometry->points + 3 * (size_t)point, *p = geometry->points + 3 * (size_t)defined[0];
     double unit = filter->normal_unit * enf_points_unit((const double *const[]){x, p}, 2);
     if (filter->normal_error == 0 && magnitude < 0x1p53 * unit) { // nothing was rounded: 0 is 0
         geometry->decided[ENF_TIER_FILTER]++;
         return value > 0 ? 1 : value < 0 ? -1 : 0;
     }
+    if (defined[2] >= 0) return orient(geometry, point, plane, geometry->points + 3 * (size_t)defined[2]);
     double third[3];
-    if (defined[2] >= 0) return orient(geometry, p, q, geometry->points + 3 * (size_t)defined[2], x);
     int axis = axis_of(defined[2]), step = p[axis] > 0 ? -1 : 1; // one step beyond 2^53 is no double
     for (int i = 0; i < 3; i++) third[i] = i == axis ? p[i] + step : p[i];
-    return step * orient(geometry, p, q, third, x);
+    return step * orient(geometry, point, plane, third);
 }
 
 static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t plane,
@@ -359,7 +375,7 @@ static inline int side_of_point(enf_geometry *geometry, int32_t point, int32_t p
         geometry->decided[ENF_TIER_FILTER]++;
         return 2 * (value > 0) - 1;
     }
-    return decide_point(geometry, x, plane, filter, value, magnitude);
+    return decide_point(geometry, point, plane, filter, value, magnitude);
 }
 
 const enf_crossing *enf_geometry_crossing(const enf_geometry *geometry, int32_t vertex) {
@@ -544,9 +560,7 @@ int enf_geometry_side(enf_geometry *geometry, int32_t vertex, int32_t plane) {
         plane >= geometry->filter_first && (plane < geometry->filter_end || geometry->filter_end == 0);
     if (!stored && vertex < geometry->point_count && defined[2] >= 0) { // cheaper than making a filter
         if (vertex == defined[0] || vertex == defined[1] || vertex == defined[2]) return 0;
-        const double *at = geometry->points;
-        return orient(geometry, at + 3 * (size_t)defined[0], at + 3 * (size_t)defined[1],
-                      at + 3 * (size_t)defined[2], at + 3 * (size_t)vertex);
+        return orient(geometry, vertex, plane, geometry->points + 3 * (size_t)defined[2]);
     }
     enf_plane_filter room;
     return enf_geometry_side_by(geometry, vertex, plane, enf_geometry_filter(geometry, plane, &room));

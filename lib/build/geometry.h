@@ -36,7 +36,13 @@ typedef struct enf_crossing {
 /// What decides a predicate: doubles, pairs of doubles, whole numbers of any size.
 enum { ENF_TIER_FILTER, ENF_TIER_PAIRS, ENF_TIER_EXACT, ENF_TIERS };
 
-enum { ENF_FILTERS_KEPT = 64, ENF_MEETINGS_KEPT = 256 };
+enum { ENF_FILTERS_KEPT = 64, ENF_MEETINGS_KEPT = 256, ENF_SIDES_KEPT = 1024 };
+
+/// On which side of a plane a point lies, where that took exact arithmetic.
+typedef struct enf_kept_side {
+    int32_t plane; ///< + 1; 0: none
+    int32_t point, side;
+} enf_kept_side;
 
 /// What was made a while ago: cells are cut by the same planes again and again, and their corners held
 /// against one after the other.
@@ -45,6 +51,7 @@ typedef struct enf_kept_filters {
     enf_plane_filter filter[ENF_FILTERS_KEPT];
     int32_t meeting_of[ENF_MEETINGS_KEPT][3]; ///< the planes; all the same: none
     enf_doubled_meeting meeting[ENF_MEETINGS_KEPT];
+    enf_kept_side side[ENF_SIDES_KEPT];
 } enf_kept_filters;
 
 /// Vertices are numbered: points, then crossings.
@@ -63,7 +70,7 @@ typedef struct enf_geometry {
     int32_t crossing_count;
     size_t crossing_capacity;
 
-    uint64_t decided[ENF_TIERS]; ///< predicates, by what decided them
+    uint64_t decided[ENF_TIERS]; ///< predicates, by what decided them; those that were kept count once
 } enf_geometry;
 
 /// The plane's filter, from planes[plane].

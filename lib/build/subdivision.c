@@ -206,6 +206,7 @@ static void take_geometry(enf_subdivision *s, const enf_geometry *geometry) {
     s->geometry.crossing_capacity = capacity;
     s->geometry.crossing_count = 0;
     memset(s->geometry.decided, 0, sizeof s->geometry.decided);
+    memset(kept->side, 0, sizeof kept->side); // so that the counts do not depend on who cuts which part
 }
 
 bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, const enf_tet_mesh *tets,
@@ -216,15 +217,16 @@ bool enf_subdivision_start(enf_subdivision *s, const enf_geometry *geometry, con
     // and edges of the tetrahedra are filled in below without a look: three of a facet, each its own edge at
     // worst.
     size_t nodes = cuts * 4 / 5, crossings = cuts * 7 / 10;
-    take_geometry(s, geometry);
     if (!s->geometry.kept) s->geometry.kept = enf_array_zeroed(1, sizeof *s->geometry.kept);
+    if (!s->geometry.kept) return false;
+    take_geometry(s, geometry);
     s->facet_count = s->edge_count = s->node_count = 0;
     s->half_count = 1;
     s->free_half = s->free_facet = s->free_edge = -1;
     s->cell_count = count;
     s->tetrahedron_count = part->tetrahedron_count;
     s->tetrahedron_planes = tets->facet_count;
-    if (!s->geometry.kept || !enf_array_reserve(s->tetrahedron_root, s->root_capacity, count + 1) ||
+    if (!enf_array_reserve(s->tetrahedron_root, s->root_capacity, count + 1) ||
         !enf_array_reserve(s->halves, s->half_capacity, 3 * facets + 1) ||
         !enf_array_reserve(s->facets, s->facet_capacity, facets + 1) ||
         !enf_array_reserve(s->edge_half, s->edge_capacity, 3 * facets + 1) ||
