@@ -49,11 +49,15 @@ ENF_PART_OF_WIDE enf_four enf_four_abs(enf_four four) {
 
 /// Of numbers that are no NaN.
 ENF_PART_OF_WIDE enf_four enf_four_max(enf_four a, enf_four b) {
-    return enf_four_choose(a > b, a, b);
+    enf_four max;
+    for (int lane = 0; lane < ENF_FOUR; lane++) max[lane] = a[lane] > b[lane] ? a[lane] : b[lane];
+    return max;
 }
 
 ENF_PART_OF_WIDE enf_four enf_four_min(enf_four a, enf_four b) {
-    return enf_four_choose(a < b, a, b);
+    enf_four min;
+    for (int lane = 0; lane < ENF_FOUR; lane++) min[lane] = a[lane] < b[lane] ? a[lane] : b[lane];
+    return min;
 }
 
 /// The first three columns of four rows.
@@ -80,7 +84,8 @@ ENF_PART_OF_WIDE void enf_four_turn(const enf_four rows[4], enf_four columns[3])
 /// Bits 0 to 3.
 ENF_PART_OF_WIDE unsigned enf_four_bits(enf_four_mask mask) {
     const enf_four_mask bits = mask & (enf_four_mask){1, 2, 4, 8};
-    return (unsigned)((bits[0] | bits[1]) | (bits[2] | bits[3]));
+    const enf_four_mask pairs = bits | __builtin_shuffle(bits, (enf_four_mask){2, 3, 0, 1});
+    return (unsigned)(pairs[0] | pairs[1]);
 }
 
 #endif
