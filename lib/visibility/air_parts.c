@@ -15,6 +15,7 @@
 /// What a fine cell, or the hull of some, leaves of itself in a leaf.
 typedef struct piece {
     int32_t leaf, cell;
+    int32_t share;        ///< whose corners
     int32_t first, count; ///< corners
     bool is_thin;         ///< lies within the tolerance of a plane on the way: it does not say what is air
 } piece;
@@ -28,7 +29,7 @@ typedef struct body {
 
 typedef struct slicer {
     const enf_air_tree *tree;
-    int32_t cell;
+    int32_t share, cell;
     double (*stack)[3]; ///< bodies on the way down
     size_t stack_count, stack_capacity;
     double (*cap)[3]; ///< scratch: where a plane cuts a body
@@ -98,6 +99,7 @@ static bool put_piece(slicer *slicer, int32_t leaf, const body *body) {
         return false;
     slicer->pieces[slicer->piece_count++] = (piece){.leaf = leaf,
                                                     .cell = slicer->cell,
+                                                    .share = slicer->share,
                                                     .first = slicer->corner_count,
                                                     .count = body->count,
                                                     .is_thin = body->is_thin};
@@ -198,59 +200,78 @@ static int32_t first_of(const slicing *slicing, int32_t share) {
 static void slice_share(void *user, int32_t share, int thread) {
     slicing *slicing = user;
     (void)thread;
-    slicing->slicers[share] = (slicer){.tree = slicing->tree};
+    slicing->slicers[share] = (slicer){.tree = slicing->tree, .share = share};
     slicing->good[share] = slice(&slicing->slicers[share], slicing->view, first_of(slicing, share),
                                  first_of(slicing, share + 1));
 }
 
-/// The pieces of all shares, one after the other.
+/// The pieces of all shares; their corners are where the slicers have put them.
 typedef struct pieces {
     piece *items;
     int32_t count;
-    double (*corners)[3];
-    int32_t corner_count;
+    size_t corner_count;
+    slicing slicing;
 } pieces;
 
-static void append(pieces *all, const slicer *slicer) {
-    if (slicer->piece_count == 0) return;
-    for (int32_t i = 0; i < slicer->piece_count; i++) {
-        all->items[all->count] = slicer->pieces[i];
-        all->items[all->count++].first += all->corner_count;
-    }
-    memcpy(all->corners + all->corner_count, slicer->corners,
-           (size_t)slicer->corner_count * sizeof *all->corners);
-    all->corner_count += slicer->corner_count;
+static const double (*corners_of(const pieces *all, const piece *piece))[3] {
+    return (const double(*)[3])(all->slicing.slicers[piece->share].corners + piece->first);
 }
 
 /// False without memory; free *all in any case.
 static bool slice_all(pieces *all, const enf_air_tree *tree, const enf_file_view *view, int threads) {
     const enf_crew crew = {.threads = threads};
-    slicing slicing = {.tree = tree, .view = view};
-    size_t count = 0, corner_count = 0;
+    slicing *slicing = &all->slicing;
+    size_t count = 0;
     bool good = true;
-    enf_parallel_for(&crew, SHARES, slice_share, &slicing);
+    slicing->tree = tree;
+    slicing->view = view;
+    enf_parallel_for(&crew, SHARES, slice_share, slicing);
     for (int i = 0; i < SHARES; i++) {
-        count += (size_t)slicing.slicers[i].piece_count;
-        corner_count += (size_t)slicing.slicers[i].corner_count;
-        good = good && slicing.good[i];
+        count += (size_t)slicing->slicers[i].piece_count;
+        all->corner_count += (size_t)slicing->slicers[i].corner_count;
+        good = good && slicing->good[i];
     }
     all->items = enf_array_new(count, sizeof *all->items);
-    all->corners = enf_array_new(corner_count, sizeof *all->corners);
-    good = good && all->items && all->corners && corner_count <= INT32_MAX;
+    if (!good || !all->items || count > INT32_MAX || all->corner_count > INT32_MAX) return false;
     for (int i = 0; i < SHARES; i++) {
-        if (good) append(all, &slicing.slicers[i]);
-        free_slicer(&slicing.slicers[i]);
+        const slicer *slicer = &slicing->slicers[i];
+        if (slicer->piece_count == 0) continue;
+        memcpy(all->items + all->count, slicer->pieces, (size_t)slicer->piece_count * sizeof *all->items);
+        all->count += slicer->piece_count;
     }
-    return good;
+    return true;
+}
+
+static void free_pieces(pieces *all) {
+    for (int i = 0; i < SHARES; i++) free_slicer(&all->slicing.slicers[i]);
+    free(all->items);
 }
 
 // ---------------------------------------------------------------------------------------------- parts
 
-static int compare_pieces(const void *a, const void *b) {
-    const piece *one = a, *other = b;
-    if (one->leaf != other->leaf) return one->leaf < other->leaf ? -1 : 1;
-    if (one->cell != other->cell) return one->cell < other->cell ? -1 : 1;
-    return one->first < other->first ? -1 : one->first > other->first;
+/// Moves pieces into the order of one of their numbers, below `limit`; those with the same one stay in the
+/// order that they are in. `first` has limit + 1 places.
+static void order_by(const piece *from, piece *to, int32_t count, bool by_leaf, int32_t limit,
+                     int32_t *first) {
+    memset(first, 0, ((size_t)limit + 1) * sizeof *first);
+    for (int32_t i = 0; i < count; i++) first[1 + (by_leaf ? from[i].leaf : from[i].cell)]++;
+    for (int32_t k = 0; k < limit; k++) first[k + 1] += first[k];
+    for (int32_t i = 0; i < count; i++) to[first[by_leaf ? from[i].leaf : from[i].cell]++] = from[i];
+}
+
+/// Leaf by leaf, and there cell by cell. False without memory.
+static bool order(pieces *all, int32_t leaf_count, int32_t cell_count) {
+    const size_t limit = (size_t)(leaf_count > cell_count ? leaf_count : cell_count);
+    piece *scratch = enf_array_new((size_t)all->count, sizeof *scratch);
+    int32_t *first = enf_array_new(limit + 1, sizeof *first);
+    const bool good = scratch && first;
+    if (good) {
+        order_by(all->items, scratch, all->count, false, cell_count, first);
+        order_by(scratch, all->items, all->count, true, leaf_count, first);
+    }
+    free(scratch);
+    free(first);
+    return good;
 }
 
 /// Drops the thin pieces of leafs that have no others: those are rock.
@@ -270,7 +291,7 @@ static bool put_corners(enf_bodies *parts, const pieces *all, int32_t begin, int
                         enf_distinct *distinct) {
     int32_t first = parts->corner_first[parts->count], made = first;
     for (int32_t i = begin; i < end; i++) {
-        memcpy(parts->corners + made, all->corners + all->items[i].first,
+        memcpy(parts->corners + made, corners_of(all, &all->items[i]),
                (size_t)all->items[i].count * sizeof *parts->corners);
         made += all->items[i].count;
     }
@@ -288,7 +309,7 @@ static bool join_pieces(enf_air_parts *air, const pieces *all, int32_t leaf_coun
     parts->cell_first = enf_array_new(leafs + 1, sizeof *parts->cell_first);
     parts->owner = enf_array_new(pieces, sizeof *parts->owner);
     parts->corner_first = enf_array_new(pieces + 1, sizeof *parts->corner_first);
-    parts->corners = enf_array_new((size_t)all->corner_count, sizeof *parts->corners);
+    parts->corners = enf_array_new(all->corner_count, sizeof *parts->corners);
     air->lost = enf_array_new((size_t)cell_count, sizeof *air->lost);
     bool *found = enf_array_zeroed((size_t)cell_count, sizeof *found);
     bool good = air->leaf_of && parts->cell_first && parts->owner && parts->corner_first && parts->corners &&
@@ -320,14 +341,13 @@ enf_status enf_air_parts_make(enf_air_parts *air, const enf_air_tree *tree, cons
                               int threads, enf_error *error) {
     pieces all = {0};
     *air = (enf_air_parts){0};
-    bool good = slice_all(&all, tree, view, threads);
+    bool good = slice_all(&all, tree, view, threads) && order(&all, tree->leaf_count, view->cell_count);
     if (good) {
-        qsort(all.items, (size_t)all.count, sizeof *all.items, compare_pieces);
         drop_thin(&all);
-        good = join_pieces(air, &all, tree->leaf_count, view->cell_count) && enf_bodies_finish(&air->bodies);
+        good = join_pieces(air, &all, tree->leaf_count, view->cell_count);
     }
-    free(all.items);
-    free(all.corners);
+    free_pieces(&all);
+    good = good && enf_bodies_finish(&air->bodies);
     return good ? ENF_OK : enf_fail_memory(error, "the parts of cells");
 }
 
