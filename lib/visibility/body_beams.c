@@ -13,8 +13,8 @@
 #include <string.h>
 
 /// Windows are put together if their hull is no larger than this, as a part of what they are by themselves.
-/// (Together with the order it takes off a third of the visits, and adds one pair in a thousand.)
-static const double join_most = 1.02;
+/// (Together with the order it takes off a third of the visits, and adds three pairs in a thousand.)
+static const double join_most = 1.1;
 
 typedef struct waiting {
     double depth; ///< nearer ones go first
@@ -33,9 +33,10 @@ struct enf_body_beams {
     const enf_body_ways *ways;
     enf_air_ranks ranks;
     enf_kept kept;
-    uint64_t *open; ///< a bit per portal: not reached as a whole, and nothing is known against it
+    uint64_t *open;     ///< a bit per portal: not reached as a whole, and nothing is known against it
+    uint64_t *passable; ///< likewise: lines from the body can pass it forwards
     size_t open_words;
-    int32_t *reached, reached_count, first_count; ///< the first ones are those of the cells of the owner
+    int32_t *reached, reached_count, first_count; ///< the first ones are those of the cells of the source
     int32_t facing_first;                         ///< one of the first
     bool *waits;                                  ///< per cell
     waiting *heap;                                ///< cells that wait
@@ -55,12 +56,15 @@ static bool can_follow(const void *user, int32_t portal, int32_t next) {
 bool enf_body_ways_make(enf_body_ways *ways, const enf_shapes *shapes, const enf_bodies *bodies,
                         const enf_air_order *order) {
     *ways = (enf_body_ways){.shapes = shapes, .bodies = bodies, .order = order};
-    if (!enf_follows_make(&ways->follows, shapes->graph, can_follow, shapes)) return false;
+    if (!enf_sources_make(&ways->sources, bodies) ||
+        !enf_follows_make(&ways->follows, shapes->graph, can_follow, shapes))
+        return false;
     ways->coplanar = enf_coplanar_make(shapes, &ways->follows);
     return ways->coplanar != NULL;
 }
 
 void enf_body_ways_free(enf_body_ways *ways) {
+    enf_sources_free(&ways->sources);
     enf_follows_free(&ways->follows);
     free(ways->coplanar);
     ways->coplanar = NULL;
@@ -74,12 +78,13 @@ enf_body_beams *enf_body_beams_new(const enf_body_ways *ways) {
     beams->ways = ways;
     beams->open_words = portals / 64 + 1;
     beams->open = enf_array_new(beams->open_words, sizeof *beams->open);
+    beams->passable = enf_array_new(beams->open_words, sizeof *beams->passable);
     beams->reached = enf_array_new(portals, sizeof *beams->reached);
     beams->waits = enf_array_zeroed(cells, sizeof *beams->waits);
     beams->heap = enf_array_new(cells, sizeof *beams->heap);
     const bool is_ordered = !ways->order || enf_air_ranks_make(&beams->ranks, ways->order);
-    if (enf_kept_make(&beams->kept, ways->shapes) && is_ordered && beams->open && beams->reached &&
-        beams->waits && beams->heap)
+    if (enf_kept_make(&beams->kept, ways->shapes) && is_ordered && beams->open && beams->passable &&
+        beams->reached && beams->waits && beams->heap)
         return beams;
     enf_body_beams_free(beams);
     return NULL;
@@ -90,6 +95,7 @@ void enf_body_beams_free(enf_body_beams *beams) {
     enf_air_ranks_free(&beams->ranks);
     enf_kept_free(&beams->kept);
     free(beams->open);
+    free(beams->passable);
     free(beams->reached);
     free(beams->waits);
     free(beams->heap);
@@ -145,27 +151,32 @@ static int32_t pop(enf_body_beams *beams) {
 
 // ---------------------------------------------------------------------------------------------- portals
 
-/// Does some of the body lie behind the portal?
-static bool is_in_front(const enf_body_beams *beams, int32_t portal) {
-    const enf_shapes *shapes = beams->ways->shapes;
-    const enf_outline *corners = &beams->body.corners;
-    for (int32_t i = 0; i < corners->count; i++) {
-        double corner[3];
-        enf_outline_corner(corners, i, corner);
-        if (enf_shape_height(shapes, portal, corner) < shapes->tolerance) return true;
+/// Is it faced by a portal that lines from the body begin with? Where the body's middle is behind the portal,
+/// that is not asked: it takes off next to nothing.
+static bool is_faced(enf_body_beams *beams, int32_t portal) {
+    if (enf_shape_height(beams->ways->shapes, portal, beams->body.middle) < 0) return true;
+    for (int32_t i = 0; i < beams->first_count; i++) { // most are faced by the one that faced the last
+        if (enf_portals_face(beams->ways->shapes, beams->reached[beams->facing_first], portal)) return true;
+        beams->facing_first = beams->facing_first + 1 < beams->first_count ? beams->facing_first + 1 : 0;
     }
     return false;
 }
 
-/// Can lines from the body pass the portal forwards? If its middle is not behind the portal, some of the body
-/// is, and lines have passed one of the first portals. (To ask for that otherwise, too, takes off next to
-/// nothing.)
-static bool is_passable(enf_body_beams *beams, int32_t portal) {
-    if (enf_shape_height(beams->ways->shapes, portal, beams->body.middle) < 0) return true;
-    if (!is_in_front(beams, portal)) return false;
-    for (int32_t i = 0; i < beams->first_count; i++) { // most are faced by the one that faced the last
-        if (enf_portals_face(beams->ways->shapes, beams->reached[beams->facing_first], portal)) return true;
-        beams->facing_first = beams->facing_first + 1 < beams->first_count ? beams->facing_first + 1 : 0;
+/// Can lines from the body pass the portal forwards? Some of it has to lie behind: its middle, or a corner;
+/// the box around it may tell that there is none.
+static bool is_passable(const enf_body_beams *beams, int32_t portal) {
+    const enf_shapes *shapes = beams->ways->shapes;
+    const enf_body *body = &beams->body;
+    const double middle = enf_shape_height(shapes, portal, body->middle);
+    if (middle < 0) return true;
+    const double *normal = shapes->shapes[portal >> 1].normal;
+    double reach = 0;
+    for (int axis = 0; axis < 3; axis++) reach += body->half[axis] * fabs(normal[axis]);
+    if (middle - reach >= shapes->tolerance) return false;
+    for (int32_t i = 0; i < body->corners.count; i++) {
+        double corner[3];
+        enf_outline_corner(&body->corners, i, corner);
+        if (enf_shape_height(shapes, portal, corner) < shapes->tolerance) return true;
     }
     return false;
 }
@@ -288,13 +299,20 @@ static void spread(enf_body_beams *beams, int32_t cell, const gap *gap) {
     for (int32_t k = follows->first[gap->portal]; k < follows->first[gap->portal + 1]; k++) {
         int32_t next = follows->portals[k];
         if (!enf_bit_get(beams->open, next)) continue;
+        if (!enf_bit_get(beams->passable, next)) {
+            if (!is_passable(beams, next)) {
+                enf_bit_clear(beams->open, next);
+                continue;
+            }
+            enf_bit_set(beams->passable, next);
+        }
         need_separators(beams, gap, &ready);
         enf_remains remains =
             enf_separators_cut(&beams->separators, beams->ways->shapes, next, &beams->window);
         if (remains == ENF_REMAINS_NOTHING) continue;
         if (beams->kept.beams[next].state != ENF_BEAM_NONE)
             reach_again(beams, next, remains);
-        else if (is_passable(beams, next))
+        else if (is_faced(beams, next))
             reach(beams, next, remains);
         else
             enf_bit_clear(beams->open, next);
@@ -327,39 +345,41 @@ static void meet_cell(enf_body_beams *beams, int32_t cell) {
         enf_bit_set(beams->met, bodies->owner[k]);
 }
 
-/// Begins with the bodies of an owner, in all their cells.
-static void begin(enf_body_beams *beams, int32_t owner, uint64_t *met) {
-    const enf_bodies *bodies = beams->ways->bodies;
-    const int32_t *first = &bodies->owner_first[owner], whole = bodies->whole_first[owner];
+/// Begins with the bodies of a source, in all their cells.
+static void begin(enf_body_beams *beams, int32_t source, uint64_t *met) {
+    const enf_sources *sources = &beams->ways->sources;
+    const int32_t *first = &sources->cell_first[source], *corner = &sources->corner_first[source];
     for (int32_t i = 0; i < beams->reached_count; i++)
         beams->kept.beams[beams->reached[i]].state = ENF_BEAM_NONE;
     while (beams->heap_count > 0) beams->waits[beams->heap[--beams->heap_count].cell] = false;
     beams->reached_count = beams->first_count = beams->facing_first = beams->kept.window_count = 0;
-    if (first[0] == first[1]) return;
     beams->met = met;
-    enf_body_make(&beams->body, (const double(*)[3])(bodies->wholes + whole),
-                  bodies->whole_first[owner + 1] - whole, beams->ways->shapes->tolerance / 8);
+    enf_body_make(&beams->body, (const double(*)[3])(sources->corners + corner[0]), corner[1] - corner[0],
+                  beams->ways->shapes->tolerance / 8);
     if (beams->ways->order) enf_air_ranks_begin(&beams->ranks, beams->body.middle);
     memset(beams->open, -1, beams->open_words * sizeof *beams->open);
-    for (int32_t k = first[0]; k < first[1]; k++) meet_cell(beams, bodies->cells[k]);
-    for (int32_t k = first[0]; k < first[1]; k++) leave(beams, bodies->cells[k]);
+    memset(beams->passable, 0, beams->open_words * sizeof *beams->passable);
+    for (int32_t k = first[0]; k < first[1]; k++) meet_cell(beams, sources->cells[k]);
+    for (int32_t k = first[0]; k < first[1]; k++) leave(beams, sources->cells[k]);
     beams->first_count = beams->reached_count;
 }
 
-void enf_body_beams_cast(enf_body_beams *beams, int32_t owner, uint64_t *met) {
-    begin(beams, owner, met);
+void enf_body_beams_cast(enf_body_beams *beams, int32_t source, uint64_t *met) {
+    begin(beams, source, met);
     while (beams->heap_count > 0) spread_cell(beams, pop(beams));
 }
 
-void enf_body_beams_face(enf_body_beams *beams, int32_t owner, uint64_t *met) {
+void enf_body_beams_face(enf_body_beams *beams, int32_t source, uint64_t *met) {
     const enf_follows *follows = &beams->ways->follows;
-    begin(beams, owner, met);
+    begin(beams, source, met);
     for (int32_t i = 0; i < beams->reached_count; i++) {
         const int32_t via = beams->reached[i];
         meet_cell(beams, enf_portal_to(beams->ways->shapes->graph, via));
         for (int32_t k = follows->first[via]; k < follows->first[via + 1]; k++) {
             const int32_t next = follows->portals[k];
-            if (beams->kept.beams[next].state != ENF_BEAM_NONE || !is_passable(beams, next)) continue;
+            if (beams->kept.beams[next].state != ENF_BEAM_NONE || !is_passable(beams, next) ||
+                !is_faced(beams, next))
+                continue;
             beams->kept.beams[next].state = ENF_BEAM_REACHED;
             beams->reached[beams->reached_count++] = next;
         }

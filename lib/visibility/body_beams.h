@@ -11,11 +11,13 @@
 #include "visibility/bodies.h"
 #include "visibility/follows.h"
 #include "visibility/shapes.h"
+#include "visibility/sources.h"
 
 /// What beams go by; shared by all threads.
 typedef struct enf_body_ways {
     const enf_shapes *shapes;
     const enf_bodies *bodies;
+    enf_sources sources;        ///< of beams
     const enf_air_order *order; ///< of the cells; null: nearer ones first
     enf_follows follows;        ///< portals that can come right after each other
     int32_t *coplanar;          ///< rings of portals (coplanar.h)
@@ -33,13 +35,13 @@ typedef struct enf_body_beams enf_body_beams;
 enf_body_beams *enf_body_beams_new(const enf_body_ways *ways);
 void enf_body_beams_free(enf_body_beams *beams);
 
-/// Casts the beams of all bodies of an owner at once, as of their hull, through all portals of their cells.
+/// Casts the beams of all bodies of a source at once, as of their hull, through all portals of their cells.
 /// In *met, a row of bits that was zero, those owners are set whose bodies the beams meet, and those with
 /// bodies in the same cells.
-void enf_body_beams_cast(enf_body_beams *beams, int32_t owner, uint64_t *met);
+void enf_body_beams_cast(enf_body_beams *beams, int32_t source, uint64_t *met);
 
-/// The same without beams: through all portals that have some of the owner's bodies behind them.
-void enf_body_beams_face(enf_body_beams *beams, int32_t owner, uint64_t *met);
+/// The same without beams: through all portals that have some of the source's bodies behind them.
+void enf_body_beams_face(enf_body_beams *beams, int32_t source, uint64_t *met);
 
 /// How many windows were looked at so far, by all casts.
 int64_t enf_body_beams_visits(const enf_body_beams *beams);
