@@ -106,6 +106,23 @@ static void a_level_comes_out_the_same(void **state) {
 #endif
 }
 
+static void a_world_comes_out_the_same(void **state) {
+    (void)state;
+    static const char *const lines[] = {"gen furnished -o world.obj",
+                                        "compile world.obj -o world.enf --pvs none -q",
+                                        "pvs world.enf -o alone.txt --method hourglass -q"};
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        process ran = run_enfilade(NULL, lines[i]);
+        assert_int_equal(ran.status, 0);
+        process_free(&ran);
+    }
+    for (int ranks = 2; ranks <= 4; ranks *= 2) {
+        unlink("team.txt");
+        assert_int_equal(run_ranks(ranks, "pvs world.enf -o team.txt --method hourglass -q"), 0);
+        assert_same_file("alone.txt", "team.txt");
+    }
+}
+
 /// How often a text stands in a file.
 static int count_text(const char *path, const char *text) {
     size_t size;
@@ -208,6 +225,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_ranks_come_to_what_one_process_comes_to),
         cmocka_unit_test(a_level_comes_out_the_same),
+        cmocka_unit_test(a_world_comes_out_the_same),
         cmocka_unit_test(only_one_rank_speaks),
         cmocka_unit_test(a_killed_rank_ends_the_run_and_the_next_goes_on),
     };
