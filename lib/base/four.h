@@ -84,7 +84,11 @@ ENF_PART_OF_WIDE void enf_four_turn(const enf_four rows[4], enf_four columns[3])
 /// Bits 0 to 3.
 ENF_PART_OF_WIDE unsigned enf_four_bits(enf_four_mask mask) {
     const enf_four_mask bits = mask & (enf_four_mask){1, 2, 4, 8};
+#if defined(__clang__)
+    const enf_four_mask pairs = bits | __builtin_shufflevector(bits, bits, 2, 3, 0, 1);
+#else
     const enf_four_mask pairs = bits | __builtin_shuffle(bits, (enf_four_mask){2, 3, 0, 1});
+#endif
     return (unsigned)(pairs[0] | pairs[1]);
 }
 
