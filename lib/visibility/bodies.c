@@ -19,8 +19,9 @@ static bool find_boxes(enf_bodies *bodies) {
         for (int axis = 0; axis < 3; axis++) {
             double low = INFINITY, high = -INFINITY;
             for (int32_t i = bodies->corner_first[b]; i < bodies->corner_first[b + 1]; i++) {
-                low = fmin(low, bodies->corners[i][axis]);
-                high = fmax(high, bodies->corners[i][axis]);
+                const double at = bodies->corners[i][axis];
+                low = at < low ? at : low;
+                high = at > high ? at : high;
             }
             bodies->middle[b][axis] = (low + high) / 2;
             bodies->half[b][axis] = (high - low) / 2 + rounding * (fabs(low) + fabs(high));

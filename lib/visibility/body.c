@@ -353,10 +353,11 @@ static int32_t take_farthest(const double (*points)[3], int32_t count, double (*
     int32_t made = 0;
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         int32_t low = 0, high = 0;
+        double lowest = enf_dot(ways[k], points[0]), highest = lowest;
         for (int32_t i = 1; i < count; i++) {
             const double at = enf_dot(ways[k], points[i]);
-            if (at < enf_dot(ways[k], points[low])) low = i;
-            if (at > enf_dot(ways[k], points[high])) high = i;
+            if (at < lowest) lowest = at, low = i;
+            if (at > highest) highest = at, high = i;
         }
         memcpy(kept[made++], points[low], sizeof *kept);
         memcpy(kept[made++], points[high], sizeof *kept);
