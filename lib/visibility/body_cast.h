@@ -16,7 +16,8 @@ typedef struct enf_body_cast {
     bool by_facing;             ///< all owners see all that faces them; no beams are cast
 
     // Made; free them in any case.
-    enf_bits met; ///< bit j of row i: the beams of owner i meet a body of owner j, and the other way round
+    enf_bits met; ///< bit j of row i: the beams of owner i, or of all in its source (sources.h), meet a body
+                  ///< of owner j, and the other way round
     int64_t visits;
     int32_t owners_budgeted; ///< whose turn came too late: those see all that faces them
 } enf_body_cast;
