@@ -13,7 +13,7 @@
 #include <string.h>
 
 /// Windows are put together if their hull is no larger than this, as a part of what they are by themselves.
-/// (Together with the order it takes off a third of the visits, and adds three pairs in a thousand.)
+/// (Together with the order it takes off a third of the visits, and adds two to six pairs in a thousand.)
 static const double join_most = 1.1;
 
 typedef struct waiting {

@@ -6,12 +6,14 @@
 #include "visibility/sources.h"
 
 #include "base/array.h"
+#include "visibility/window.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/// No source is wider than each of its owners by more than this part.
+/// No source is wider than each of its owners by more than this part. (Found by trying, on 25 levels: 0.7
+/// saves another tenth of the visits, and adds another pair in a hundred.)
 static const double growth_most = 0.5;
 
 enum {
@@ -77,8 +79,7 @@ static void measure(const enf_bodies *bodies, int32_t owner, extent *extent) {
     }
     for (int32_t i = bodies->whole_first[owner]; i < bodies->whole_first[owner + 1]; i++)
         for (int k = 0; k < WAYS; k++) {
-            const double *corner = bodies->wholes[i];
-            const double at = ways[k][0] * corner[0] + ways[k][1] * corner[1] + ways[k][2] * corner[2];
+            const double at = enf_dot(ways[k], bodies->wholes[i]);
             extent->low[k] = lower(extent->low[k], at);
             extent->high[k] = higher(extent->high[k], at);
         }
