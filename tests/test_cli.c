@@ -362,6 +362,11 @@ static void growth_prints_a_row_per_world_and_a_verdict(void **state) {
     assert_non_null(strstr(ran.out, "\noffice: one size alone has no exponent\n"));
     assert_non_null(strstr(ran.out, "\ncaverns: splitting the largest is "));
     process_free(&ran);
+    ran = run_enfilade(NULL, "bench growth --largest 30000 --worlds office --runs 1 --threads 1 --seconds 0");
+    assert_int_equal(ran.status, 0);
+    assert_non_null(strstr(ran.out, "\noffice: time grows like polygons to the power of "));
+    assert_non_null(strstr(ran.out, "(2 sizes, processor time of one thread; rounds: 1, from "));
+    process_free(&ran);
 }
 
 static void damaged_world_files_are_refused(void **state) {

@@ -15,7 +15,7 @@ static enf_portal_heap open_heap(const world *w, vertex *vertices) {
     enf_graph graph = graph_of(w, (const vertex *)vertices);
     enf_portal_heap portals;
     enf_error error;
-    if (enf_portal_heap_create(&portals, &graph, ENF_HEURISTIC_ASPECT, &error) != ENF_OK)
+    if (enf_portal_heap_create(&portals, &graph, ENF_HEURISTIC_ASPECT, false, &error) != ENF_OK)
         fail_msg("%s", error.text);
     return portals;
 }

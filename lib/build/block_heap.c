@@ -14,7 +14,7 @@ static int32_t inner(const enf_block_heap *heap, int32_t item) {
     return item & (int32_t)((UINT32_C(1) << heap->block_bits) - 1);
 }
 
-static bool start(enf_block_heap *heap, int32_t count, int block_bits) {
+bool enf_block_heap_create(enf_block_heap *heap, int32_t count, int block_bits) {
     uint32_t most = UINT32_C(1) << block_bits, blocks = ((uint32_t)count + most - 1) >> block_bits;
     if (blocks == 0) blocks = 1;
     *heap = (enf_block_heap){.count = count, .block_bits = block_bits, .block_count = (int32_t)blocks};
@@ -28,10 +28,6 @@ static bool start(enf_block_heap *heap, int32_t count, int block_bits) {
     return good;
 }
 
-bool enf_block_heap_create(enf_block_heap *heap, int32_t count) {
-    return start(heap, count, ENF_ONE_BLOCK_BITS);
-}
-
 void enf_block_heap_free(enf_block_heap *heap) {
     for (int32_t block = 0; heap->blocks && block < heap->block_count; ++block)
         enf_heap_free(&heap->blocks[block]);
@@ -41,7 +37,7 @@ void enf_block_heap_free(enf_block_heap *heap) {
 
 bool enf_block_heap_divide(enf_block_heap *heap, int block_bits) {
     enf_block_heap divided;
-    if (!start(&divided, heap->count, block_bits)) return false;
+    if (!enf_block_heap_create(&divided, heap->count, block_bits)) return false;
     for (int32_t block = 0; block < heap->block_count; ++block) {
         const enf_heap *from = &heap->blocks[block];
         for (int32_t place = 0; place < from->count; ++place)

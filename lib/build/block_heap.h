@@ -16,12 +16,11 @@ typedef struct enf_block_heap {
     enf_heap *blocks;
 } enf_block_heap;
 
-/// Empty, one block. Returns false when there is no memory.
-bool enf_block_heap_create(enf_block_heap *heap, int32_t count);
+/// Empty, in blocks of 2^block_bits items, 0 to ENF_ONE_BLOCK_BITS. Returns false when there is no memory.
+bool enf_block_heap_create(enf_block_heap *heap, int32_t count, int block_bits);
 void enf_block_heap_free(enf_block_heap *heap);
 
-/// Puts what is in into blocks of 2^block_bits items, 0 to ENF_ONE_BLOCK_BITS. False, with the blocks as they
-/// were, when there is no memory.
+/// Puts what is in into other blocks. False, with the blocks as they were, when there is no memory.
 bool enf_block_heap_divide(enf_block_heap *heap, int block_bits);
 
 /// The item of a block with the smallest key, or -1 when the block is empty.

@@ -14,10 +14,6 @@
 /// Collapses between two calls of `progress`.
 #define PROGRESS_STEP 1000
 
-/// Portals of a block as a power of two; smaller worlds than MANY_BITS are one block. A block and its cells
-/// take about 8 MB: they stay near the processor while it is on top.
-enum { BLOCK_BITS = 14, MANY_BITS = 16 };
-
 /// Steps of the weight in which the blocks take turns.
 enum { STEPS = 4 };
 
@@ -156,7 +152,6 @@ static enf_status collapse_block(task *task, int32_t block, double limit, enf_de
 /// A large world block by block, in steps of the weight: the order within a step can't matter much, and a
 /// block stays near the processor while all of it is collapsed.
 static enf_status collapse_blocks(task *task, double limit, enf_decimation *out, enf_error *error) {
-    if (!enf_block_heap_divide(&task->portals.heap, BLOCK_BITS)) return enf_fail_memory(error, "the portals");
     for (int step = 1; step <= STEPS; ++step)
         for (int32_t block = 0; block < task->portals.heap.block_count; ++block) {
             enf_status status = collapse_block(task, block, limit * step / STEPS, out, error);
@@ -209,13 +204,13 @@ enf_status enf_graph_decimate(enf_graph *graph, enf_heuristic heuristic, const e
                  .scale = heuristic == ENF_HEURISTIC_ASPECT_SCALED ? 1 / unit : 1,
                  .progress = progress,
                  .user = user};
-    enf_status status = enf_portal_heap_create(&task.portals, graph, heuristic, error);
+    const double limit = unordered_limit(stop, heuristic);
+    enf_status status = enf_portal_heap_create(&task.portals, graph, heuristic, limit > 0, error);
     if (status != ENF_OK) return status;
     out->cell_of = enf_array_new((size_t)task.cell_count, sizeof *out->cell_of);
     out->collapses = enf_array_new((size_t)task.cell_count, sizeof *out->collapses);
     if (!out->cell_of || !out->collapses) status = enf_fail_memory(error, "the list of collapses");
-    double limit = unordered_limit(stop, heuristic);
-    if (status == ENF_OK && limit > 0 && task.portals.portal_count > 1 << MANY_BITS)
+    if (status == ENF_OK && task.portals.heap.block_count > 1)
         status = collapse_blocks(&task, limit, out, error);
     if (status == ENF_OK) status = collapse_all(&task, out, error);
     if (status == ENF_OK && stop->rule == ENF_STOP_AUTO) {

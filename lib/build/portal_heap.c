@@ -11,6 +11,10 @@
 /// most.
 enum { PLUGGED_SIDES = 256, PLUG_SIDES = 24 };
 
+/// Portals of a block as a power of two; no more than MANY_BITS are one block. A block and its cells take
+/// about 8 MB.
+enum { BLOCK_BITS = 14, MANY_BITS = 16 };
+
 void enf_portal_heap_free(enf_portal_heap *portals) {
     enf_surface_free(&portals->surface);
     enf_pair_table_free(&portals->table);
@@ -150,12 +154,12 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
     return true;
 }
 
-static bool allocate(enf_portal_heap *portals, size_t cells, size_t pieces, size_t count) {
+static bool allocate(enf_portal_heap *portals, size_t cells, size_t pieces, size_t count, int block_bits) {
     portals->portals = enf_array_zeroed(count, sizeof *portals->portals);
     portals->piece_next = enf_array_new(pieces, sizeof *portals->piece_next);
     portals->cells = enf_array_new(cells, sizeof *portals->cells);
     if (!portals->portals || !portals->piece_next || !portals->cells ||
-        !enf_block_heap_create(&portals->heap, (int32_t)count))
+        !enf_block_heap_create(&portals->heap, (int32_t)count, block_bits))
         return false;
     for (size_t cell = 0; cell < cells; ++cell)
         portals->cells[cell] =
@@ -225,15 +229,17 @@ static int32_t count_portals(enf_portal_heap *portals) {
 }
 
 enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, enf_heuristic heuristic,
-                                  enf_error *error) {
+                                  bool in_blocks, enf_error *error) {
     *portals = (enf_portal_heap){.heuristic = heuristic};
     size_t cells = (size_t)graph->cell_count;
     enf_status status = enf_surface_create(&portals->surface, graph, error);
     enf_graph_free(graph);
     if (status != ENF_OK) return status;
     size_t pieces = (size_t)portals->surface.piece_count;
-    bool fine = enf_pair_table_create(&portals->table, (int32_t)cells) &&
-                allocate(portals, cells, pieces, (size_t)count_portals(portals)) && fill_portals(portals);
+    bool fine = enf_pair_table_create(&portals->table, (int32_t)cells);
+    const int32_t count = fine ? count_portals(portals) : 0;
+    const int block_bits = in_blocks && count > 1 << MANY_BITS ? BLOCK_BITS : ENF_ONE_BLOCK_BITS;
+    fine = fine && allocate(portals, cells, pieces, (size_t)count, block_bits) && fill_portals(portals);
     for (int32_t number = 0; fine && number < portals->portal_count; ++number) {
         double weight;
         fine = weigh(portals, &portals->portals[number], &weight);

@@ -49,15 +49,16 @@ typedef struct enf_portal_heap {
     enf_portal *portals;
     int32_t *piece_next;  ///< for each piece the next one of the same portal, or -1
     enf_pair_table table; ///< two cells -> their portal
-    enf_block_heap heap;  ///< which is the lightest; one block unless the caller divides it
+    enf_block_heap heap;  ///< which is the lightest
     enf_portal_cell *cells;
     size_t evaluations; ///< weights computed
 } enf_portal_heap;
 
 /// Takes the graph: it is empty afterwards, whatever the outcome. Portals are numbered as their cells
-/// are, along a curve through space.
+/// are, along a curve through space. They are in one block, but with `in_blocks` in several if they are
+/// many: a block and its cells stay near the processor while it is worked on.
 enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, enf_heuristic heuristic,
-                                  enf_error *error);
+                                  bool in_blocks, enf_error *error);
 void enf_portal_heap_free(enf_portal_heap *portals);
 
 /// The lightest portal of a block and its true weight, in graph units; *portal is -1 when none is left.
