@@ -171,7 +171,8 @@ static void use_shapes(const enf_world *world, const enf_file_view *file) {
             enf_object_seen seen[4];
             enf_camera camera = enf_camera_look(shape.centre, forward, up, 1, 1);
             if (view)
-                sink += enf_objects_in_view(objects, query, enf_view_run(view, instance, &camera), seen, 4);
+                sink += enf_objects_in_view(objects, query, instance, enf_view_run(view, instance, &camera),
+                                            seen, 4);
         }
     }
     enf_instance_free(instance);

@@ -310,7 +310,7 @@ static void ask_objects(stage *s) {
     enf_object_seen seen[ROOM];
     enf_camera camera = enf_camera_look(s->from, planes[0], s->to, 1.2, 1.6);
     const enf_visible *visible = enf_view_run(s->look, s->instance, &camera);
-    s->answers += enf_objects_in_view(s->objects, s->query, visible, seen, ROOM) > 0;
+    s->answers += enf_objects_in_view(s->objects, s->query, s->instance, visible, seen, ROOM) > 0;
     enf_objects_meets(s->objects, *handle, planes, 1);
     s->answers += enf_objects_get_use(s->objects).objects > 0;
 }

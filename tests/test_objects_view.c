@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Objects that come with a view: what a ray of the camera meets, through portals that transform and in
-// mirrors, is listed, in a space that carries it to the ray's pixel; and the list is the one that a plain
-// search makes.
+// mirrors, is listed, in a space that carries it to the ray's pixel; what stands in a portal that transforms
+// comes out of it; and the list is the one that a plain search makes.
 #include "view_scene.h"
 
 #include "enfilade/objects.h"
@@ -28,6 +28,7 @@ typedef struct stage {
     scene scene;
     const enf_camera *camera;
     int met[SCENE_TRANSFORMS + 1]; ///< by rays, by portals that transform and were passed
+    int images, mirrors;           ///< of objects that stood in such portals
 } stage;
 
 static void add_random(stage *s, int number, uint64_t *seed) {
@@ -98,11 +99,13 @@ static void put_in_the_way(void *user, const scene_ray *ray, const double point[
     enf_shape shape = {.radius = 1e-9};
     memcpy(shape.centre, point, sizeof shape.centre);
     assert_int_equal(enf_objects_add(s->objects, &shape, OBJECTS - 1, NULL, handle, NULL), ENF_OK);
-    int32_t count = enf_objects_in_view(s->objects, s->query, visible, s->seen, SEEN_MAX), found = 0;
+    int32_t count = enf_objects_in_view(s->objects, s->query, s->instance, visible, s->seen, SEEN_MAX),
+            found = 0;
     assert_in_range(count, 1, SEEN_MAX);
     for (int32_t i = 0; i < count; i++) {
         const enf_object_seen *seen = &s->seen[i];
-        if (!same(seen->object, *handle) || !scene_has_chain(visible, seen->space, ray)) continue;
+        if (!same(seen->object, *handle) || !scene_has_chain(visible, seen->space, ray) || seen->portal >= 0)
+            continue;
         double xy[2];
         show(s->camera, &visible->spaces[seen->space], point, xy);
         assert_true(hypot(xy[0] - ray->x, xy[1] - ray->y) < 1e-3);
@@ -112,6 +115,77 @@ static void put_in_the_way(void *user, const scene_ray *ray, const double point[
     s->met[ray->chain_count]++;
     assert_int_equal(enf_objects_remove(s->objects, *handle, NULL), ENF_OK);
     *handle = (enf_object){0, 0};
+}
+
+/// Moves a point as a portal does. Is it a mirror?
+static bool carry(const stage *s, int32_t portal, const double point[3], double carried[3]) {
+    double m[12];
+    int32_t to;
+    assert_true(enf_instance_get_transform(s->instance, portal, &to, m));
+    for (int i = 0; i < 3; i++)
+        carried[i] = m[4 * i] * point[0] + m[4 * i + 1] * point[1] + m[4 * i + 2] * point[2] + m[4 * i + 3];
+    const double volume = m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+                          m[2] * (m[4] * m[9] - m[5] * m[8]);
+    return to == s->file->portals[portal].from && volume < 0;
+}
+
+/// Puts an object where the ray passes a portal that transforms, with its centre before it: behind it, the
+/// image is seen in the ray's pixel. Mirrors have none.
+static void put_in_the_portal(void *user, const scene_ray *before, double t, const scene_ray *after) {
+    stage *s = user;
+    const int32_t portal = after->chain[after->chain_count - 1];
+    const double *d = before->direction, radius = 1e-3;
+    enf_object *handle = &s->handles[OBJECTS - 1];
+    enf_shape shape = {.radius = radius};
+    double image[3], xy[2];
+    scene_point_at(before, t - radius / 2 / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), shape.centre);
+    if (enf_world_locate(s->world.world, shape.centre, -1).cell != before->cell) return; // past an edge
+    assert_int_equal(enf_objects_add(s->objects, &shape, OBJECTS - 1, NULL, handle, NULL), ENF_OK);
+    const enf_visible *visible = s->scene.visible;
+    const int32_t count = enf_objects_in_view(s->objects, s->query, s->instance, visible, s->seen, SEEN_MAX);
+    const bool is_mirror = carry(s, portal, shape.centre, image);
+    int found = 0;
+    assert_in_range(count, 0, SEEN_MAX);
+    for (int32_t i = 0; i < count; i++) {
+        const enf_object_seen *seen = &s->seen[i];
+        if (!same(seen->object, *handle) || seen->portal != portal) continue;
+        if (!scene_has_chain(visible, seen->space, after)) continue;
+        show(s->camera, &visible->spaces[seen->space], image, xy);
+        assert_true(hypot(xy[0] - after->x, xy[1] - after->y) < 1e-3);
+        found++;
+    }
+    assert_int_equal(found, !is_mirror);
+    *(is_mirror ? &s->mirrors : &s->images) += 1;
+    assert_int_equal(enf_objects_remove(s->objects, *handle, NULL), ENF_OK);
+    *handle = (enf_object){0, 0};
+}
+
+/// Does a sphere reach into the portal, at least as far as its planes tell?
+static bool may_reach(const enf_file_view *file, int32_t portal, const enf_shape *shape) {
+    const enf_file_portal *p = &file->portals[portal];
+    for (int32_t i = 0; i < p->polygon_count; i++)
+        if (fabs(scene_step_off(file->portal_polygons[p->polygon_first + i].plane, shape->centre)) <
+            shape->radius + 1e-6)
+            return true;
+    return false;
+}
+
+/// Images come last, each once in a space.
+static void check_images(const stage *s, const enf_visible *visible, int32_t first, int32_t count) {
+    for (int32_t i = first; i < count; i++) {
+        const enf_object_seen *seen = &s->seen[i];
+        enf_object_info info;
+        double image[3];
+        assert_true(seen->portal >= 0);
+        assert_false(carry(s, seen->portal, s->file->portals[seen->portal].centre, image));
+        assert_true(enf_objects_get(s->objects, seen->object, &info));
+        assert_true(may_reach(s->file, seen->portal, &info.shape));
+        assert_in_range(seen->entry, 0, visible->entry_count - 1);
+        assert_int_equal(visible->entries[seen->entry].space, seen->space);
+        for (int32_t k = first; k < i; k++)
+            assert_false(same(s->seen[k].object, seen->object) && s->seen[k].portal == seen->portal &&
+                         s->seen[k].space == seen->space);
+    }
 }
 
 /// The first entry of a space with a cell of the object; -1: none.
@@ -133,7 +207,8 @@ static bool has_entry(const enf_visible *visible, int32_t space) {
 /// Is each object there, once for each of its spaces, in order? Returns how many are behind portals that
 /// transform, or everywhere.
 static int check_list(const stage *s, const enf_visible *visible) {
-    int32_t count = enf_objects_in_view(s->objects, s->query, visible, s->seen, SEEN_MAX), expected = 0;
+    int32_t count = enf_objects_in_view(s->objects, s->query, s->instance, visible, s->seen, SEEN_MAX),
+            expected = 0;
     int behind = 0;
     assert_in_range(count, 0, SEEN_MAX);
     for (int32_t space = 0; space < visible->space_count; space++) {
@@ -144,6 +219,7 @@ static int check_list(const stage *s, const enf_visible *visible) {
             bool wanted = info.everywhere ? has_entry(visible, space) : entry >= 0;
             for (int32_t i = 0; i < count; i++) {
                 if (s->seen[i].space != space || !same(s->seen[i].object, s->handles[o])) continue;
+                if (s->seen[i].portal >= 0) continue;
                 assert_int_equal(s->seen[i].entry, entry);
                 found++;
             }
@@ -152,19 +228,21 @@ static int check_list(const stage *s, const enf_visible *visible) {
             behind += wanted && (space > 0 || info.everywhere);
         }
     }
-    assert_int_equal(count, expected);
-    for (int32_t i = 1; i < count; i++) {
+    assert_true(count >= expected);
+    check_images(s, visible, expected, count);
+    for (int32_t i = 1; i < expected; i++) {
         const enf_object_seen *seen = &s->seen[i], *before = seen - 1;
         assert_true(before->space <= seen->space);
         if (before->space == seen->space && seen->entry >= 0) assert_in_range(before->entry, 0, seen->entry);
     }
-    assert_int_equal(enf_objects_in_view(s->objects, s->query, visible, NULL, 0), count);
+    assert_int_equal(enf_objects_in_view(s->objects, s->query, s->instance, visible, NULL, 0), count);
     if (count == 0) return behind;
     enf_object_seen last = s->seen[count - 1];
     memset(s->seen, 0, (size_t)count * sizeof last);
-    assert_int_equal(enf_objects_in_view(s->objects, s->query, visible, s->seen, count - 1), count);
+    assert_int_equal(enf_objects_in_view(s->objects, s->query, s->instance, visible, s->seen, count - 1),
+                     count);
     assert_true(s->seen[count - 1].object.slot == 0);
-    assert_true(enf_objects_in_view(s->objects, s->query, visible, s->seen, count) == count);
+    assert_true(enf_objects_in_view(s->objects, s->query, s->instance, visible, s->seen, count) == count);
     assert_true(same(s->seen[count - 1].object, last.object) && s->seen[count - 1].space == last.space);
     return behind;
 }
@@ -183,6 +261,7 @@ static int look_around(stage *s, int cameras, uint64_t *seed) {
         assert_int_equal(s->scene.visible->flags & (ENF_VIEW_OVERFLOW | ENF_VIEW_INCOMPLETE), 0);
         behind += check_list(s, s->scene.visible);
         s->scene.come_to = put_in_the_way;
+        s->scene.pass = put_in_the_portal;
         for (int k = 0; k < SCENE_RAYS; k++) {
             scene_ray ray = {
                 .cell = place.cell, .x = 2 * run_random_share(seed) - 1, .y = 2 * run_random_share(seed) - 1};
@@ -199,14 +278,18 @@ static void rays_meet_what_is_listed(void **state) {
     (void)state;
     uint64_t seed = 1995;
     print_message("seed %llu\n", (unsigned long long)seed);
-    int met[SCENE_TRANSFORMS + 1] = {0}, behind = 0;
+    int met[SCENE_TRANSFORMS + 1] = {0}, behind = 0, images = 0, mirrors = 0;
     for (int i = 0; i < 12; i++) {
         stage s = make_stage(6 + i % 2 * 2, i % 3 == 2, 10000, i % 4 == 3, &seed);
         behind += look_around(&s, 60, &seed);
         for (int k = 0; k <= SCENE_TRANSFORMS; k++) met[k] += s.met[k];
+        images += s.images;
+        mirrors += s.mirrors;
         free_stage(&s);
     }
-    print_message("%d %d %d, %d behind\n", met[0], met[1], met[2], behind);
+    print_message("%d %d %d, %d behind, %d in portals, %d in mirrors\n", met[0], met[1], met[2], behind,
+                  images, mirrors);
+    assert_true(images > 1000 && mirrors > 100);
     assert_true(met[0] > 1000 && met[1] > 1000 && met[2] > 100 && behind > 1000);
 }
 
@@ -230,7 +313,7 @@ static void nothing_is_seen_without_cells(void **state) {
         enf_camera camera = scene_camera(i ? bad : far_away, &seed);
         const enf_visible *visible = enf_view_run(s.view, s.instance, &camera);
         assert_int_equal(visible->entry_count, 0);
-        assert_int_equal(enf_objects_in_view(s.objects, s.query, visible, s.seen, SEEN_MAX), 0);
+        assert_int_equal(enf_objects_in_view(s.objects, s.query, s.instance, visible, s.seen, SEEN_MAX), 0);
     }
     free_stage(&s);
 }

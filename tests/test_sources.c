@@ -49,7 +49,7 @@ static void make_bodies(enf_bodies *bodies, const box *boxes) {
         }
         bodies->cell_first[cell + 1] = bodies->count;
     }
-    assert_true(enf_bodies_finish(bodies));
+    assert_true(enf_bodies_finish(bodies, 1));
 }
 
 static void draw_boxes(box *boxes) {

@@ -226,7 +226,7 @@ static int32_t count_thin_openings(const enf_portal_graph *graph, double x, doub
 static void assert_planes(const enf_file_view *view, int32_t count) {
     enf_walls walls;
     enf_error error;
-    assert_int_equal(enf_air_walls_make(&walls, view, &error), ENF_OK);
+    assert_int_equal(enf_air_walls_make(&walls, view, 1, &error), ENF_OK);
     assert_true(walls.count > count);
     assert_int_equal(enf_walls_count_planes(&walls, 12), count);
     enf_walls_free(&walls);

@@ -129,6 +129,7 @@ void scene_follow(scene *scene, scene_ray ray) {
         int32_t portal = find_portal(scene, &ray, point, &passage);
         if (portal < 0 && place.cell != ray.cell) return;
         if (portal < 0) continue;
+        const scene_ray before = ray;
         ray.cell = passage.to;
         if (passage.matrix) {
             if (ray.chain_count == SCENE_TRANSFORMS) return;
@@ -139,6 +140,7 @@ void scene_follow(scene *scene, scene_ray ray) {
         }
         if (place.cell != ray.cell) return; // past an edge of cubes
         expect(scene, &ray);
+        if (scene->pass && passage.matrix) scene->pass(scene->user, &before, t, &ray);
         if (scene->come_to) scene->come_to(scene->user, &ray, beyond);
     }
 }

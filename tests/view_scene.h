@@ -26,6 +26,8 @@ typedef struct scene {
     bool cut_chains; ///< stop at SCENE_TRANSFORMS of them
     /// Told of a point of a ray in each cell that it comes to; null: nobody is.
     void (*come_to)(void *user, const scene_ray *ray, const double point[3]);
+    /// Told where a ray passes a portal that transforms: as it comes to it, after `t`, and as it goes on.
+    void (*pass)(void *user, const scene_ray *before, double t, const scene_ray *after);
     void *user;
 } scene;
 

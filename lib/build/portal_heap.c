@@ -20,6 +20,7 @@ void enf_portal_heap_free(enf_portal_heap *portals) {
     enf_pair_table_free(&portals->table);
     enf_block_heap_free(&portals->heap);
     free(portals->portals);
+    free(portals->shapes);
     free(portals->piece_next);
     free(portals->cells);
     *portals = (enf_portal_heap){0};
@@ -51,12 +52,13 @@ static void unlink_portal(enf_portal_heap *portals, int32_t number, int side) {
 }
 
 /// The unit normal of the portal's plane, its first component that is not 0 positive.
-static void normal_of(const enf_portal_heap *portals, const enf_portal *portal, double normal[3]) {
-    const double *sum = portal->sum;
+static void normal_of(const enf_portal_heap *portals, int32_t number, double normal[3]) {
+    const double *sum = portals->shapes[number].sum;
     double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
-    if (!(length > portal->area * ENF_CLOSED_PORTAL_RATIO)) {
-        sum = portals->surface.pieces[portal->largest_piece].area;
-        length = enf_surface_piece_area(&portals->surface, portal->largest_piece);
+    if (!(length > portals->shapes[number].area * ENF_CLOSED_PORTAL_RATIO)) {
+        const int32_t largest = portals->portals[number].largest_piece;
+        sum = portals->surface.pieces[largest].area;
+        length = enf_surface_piece_area(&portals->surface, largest);
     }
     if (!(length > 0)) {
         normal[0] = normal[1] = 0;
@@ -75,9 +77,10 @@ static double round_weight(double weight) {
     return ldexp(rint(ldexp(fraction, ENF_WEIGHT_BITS)), exponent - ENF_WEIGHT_BITS);
 }
 
-static double weight_of(const enf_portal_heap *portals, const enf_portal *portal, double silhouette) {
+static double weight_of(const enf_portal_heap *portals, int32_t number, double silhouette) {
+    const double area = portals->shapes[number].area;
     double size = portals->heuristic == ENF_HEURISTIC_ASPECT_SCALED ? sqrt(silhouette) : silhouette;
-    return portal->area > 0 ? round_weight(size / portal->area) : INFINITY;
+    return area > 0 ? round_weight(size / area) : INFINITY;
 }
 
 static double key_weight(const enf_portal_heap *portals, int32_t number) {
@@ -95,15 +98,15 @@ static bool is_fresh(const enf_portal_heap *portals, const enf_portal *portal) {
 }
 
 /// A lower bound of the weight that costs no look at the surfaces.
-static double bound_weight(const enf_portal_heap *portals, const enf_portal *portal) {
+static double bound_weight(const enf_portal_heap *portals, int32_t number) {
+    const int32_t *cell = portals->portals[number].cell;
     double normal[3], silhouette = 0;
-    normal_of(portals, portal, normal);
+    normal_of(portals, number, normal);
     for (int s = 0; s < 2; ++s) {
-        silhouette = fmax(silhouette, portal->silhouette[s]);
-        silhouette =
-            fmax(silhouette, enf_surface_silhouette_bound(&portals->surface, portal->cell[s], normal));
+        silhouette = fmax(silhouette, portals->shapes[number].silhouette[s]);
+        silhouette = fmax(silhouette, enf_surface_silhouette_bound(&portals->surface, cell[s], normal));
     }
-    return weight_of(portals, portal, silhouette);
+    return weight_of(portals, number, silhouette);
 }
 
 /// Takes small neighbours that fill dents of a large cell as parts of it for the next silhouette.
@@ -126,13 +129,15 @@ static bool plug_dents(enf_portal_heap *portals, int32_t cell, const double norm
 
 /// Computes the weight: the silhouettes that may have grown, the cell with the larger surface first, the
 /// other only as far as it can be the larger one. Returns false when there is no memory.
-static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) {
+static bool weigh(enf_portal_heap *portals, int32_t number, double *weight) {
+    enf_portal *portal = &portals->portals[number];
+    enf_portal_shape *shape = &portals->shapes[number];
     double normal[3], largest = 0;
-    normal_of(portals, portal, normal);
+    normal_of(portals, number, normal);
     bool known[2];
     for (int s = 0; s < 2; ++s) {
         known[s] = portal->silhouette_at[s] == portals->cells[portal->cell[s]].age;
-        if (known[s]) largest = fmax(largest, portal->silhouette[s]);
+        if (known[s]) largest = fmax(largest, shape->silhouette[s]);
     }
     const enf_body *bodies = portals->surface.bodies;
     int first = bodies[portal->cell[1]].side_count > bodies[portal->cell[0]].side_count;
@@ -145,20 +150,21 @@ static bool weigh(enf_portal_heap *portals, enf_portal *portal, double *weight) 
         if (area < 0) return false;
         if (area <= largest) continue;
         largest = area;
-        portal->silhouette[s] = area;
+        shape->silhouette[s] = area;
         portal->silhouette_at[s] = portals->cells[portal->cell[s]].age;
     }
     portal->weighed_at = portals->cells[portal->cell[0]].age + portals->cells[portal->cell[1]].age;
     ++portals->evaluations;
-    *weight = weight_of(portals, portal, largest);
+    *weight = weight_of(portals, number, largest);
     return true;
 }
 
 static bool allocate(enf_portal_heap *portals, size_t cells, size_t pieces, size_t count, int block_bits) {
-    portals->portals = enf_array_zeroed(count, sizeof *portals->portals);
+    portals->portals = enf_array_new(count, sizeof *portals->portals);
+    portals->shapes = enf_array_new(count, sizeof *portals->shapes);
     portals->piece_next = enf_array_new(pieces, sizeof *portals->piece_next);
     portals->cells = enf_array_new(cells, sizeof *portals->cells);
-    if (!portals->portals || !portals->piece_next || !portals->cells ||
+    if (!portals->portals || !portals->shapes || !portals->piece_next || !portals->cells ||
         !enf_block_heap_create(&portals->heap, (int32_t)count, block_bits))
         return false;
     for (size_t cell = 0; cell < cells; ++cell)
@@ -168,7 +174,10 @@ static bool allocate(enf_portal_heap *portals, size_t cells, size_t pieces, size
 }
 
 /// Adds the pieces of `other` to a portal; `sign` is -1 when the two run in opposite directions.
-static void join_pieces(enf_portal_heap *portals, enf_portal *portal, const enf_portal *other, double sign) {
+static void join_pieces(enf_portal_heap *portals, int32_t number, const enf_portal *other,
+                        const enf_portal_shape *other_shape, double sign) {
+    enf_portal *portal = &portals->portals[number];
+    enf_portal_shape *shape = &portals->shapes[number];
     if (portal->first_piece < 0)
         portal->first_piece = other->first_piece;
     else
@@ -178,8 +187,8 @@ static void join_pieces(enf_portal_heap *portals, enf_portal *portal, const enf_
     double area_a = a < 0 ? 0 : enf_surface_piece_area(&portals->surface, a);
     double area_b = enf_surface_piece_area(&portals->surface, b);
     if (a < 0 || area_b > area_a || (area_b == area_a && b < a)) portal->largest_piece = b;
-    portal->area += other->area;
-    for (int k = 0; k < 3; ++k) portal->sum[k] += sign * other->sum[k];
+    shape->area += other_shape->area;
+    for (int k = 0; k < 3; ++k) shape->sum[k] += sign * other_shape->sum[k];
 }
 
 /// Pieces of the same two fine cells are neighbours in the canonical order: one portal for each such run.
@@ -195,17 +204,16 @@ static bool fill_portals(enf_portal_heap *portals) {
             portals->portals[number].cell[1] != cell[1]) {
             portals->portals[++number] = (enf_portal){
                 .cell = {cell[0], cell[1]}, .first_piece = -1, .last_piece = -1, .largest_piece = -1};
+            portals->shapes[number] = (enf_portal_shape){.area = 0};
             if (!enf_pair_table_put(&portals->table, cell[0], cell[1], number)) return false;
             link_portal(portals, number, 0);
             link_portal(portals, number, 1);
         }
         const double *outward = surface->pieces[piece].area;
-        enf_portal added = {.first_piece = piece,
-                            .last_piece = piece,
-                            .largest_piece = piece,
-                            .area = enf_surface_piece_area(surface, piece),
-                            .sum = {outward[0], outward[1], outward[2]}};
-        join_pieces(portals, &portals->portals[number], &added, 1);
+        const enf_portal added = {.first_piece = piece, .last_piece = piece, .largest_piece = piece};
+        const enf_portal_shape shape = {.area = enf_surface_piece_area(surface, piece),
+                                        .sum = {outward[0], outward[1], outward[2]}};
+        join_pieces(portals, number, &added, &shape, 1);
     }
     portals->portal_count = number + 1;
     enf_surface_forget_cells(&portals->surface);
@@ -242,7 +250,7 @@ enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, en
     fine = fine && allocate(portals, cells, pieces, (size_t)count, block_bits) && fill_portals(portals);
     for (int32_t number = 0; fine && number < portals->portal_count; ++number) {
         double weight;
-        fine = weigh(portals, &portals->portals[number], &weight);
+        fine = weigh(portals, number, &weight);
         if (fine) set_key(portals, number, weight);
     }
     if (fine) return ENF_OK;
@@ -253,16 +261,15 @@ enf_status enf_portal_heap_create(enf_portal_heap *portals, enf_graph *graph, en
 enf_status enf_portal_heap_top(enf_portal_heap *portals, int32_t block, int32_t *portal, double *weight,
                                enf_error *error) {
     while ((*portal = enf_block_heap_top(&portals->heap, block)) >= 0) {
-        enf_portal *top = &portals->portals[*portal];
         double key = key_weight(portals, *portal);
         *weight = key;
-        if (is_fresh(portals, top)) return ENF_OK;
-        double bound = bound_weight(portals, top);
+        if (is_fresh(portals, &portals->portals[*portal])) return ENF_OK;
+        double bound = bound_weight(portals, *portal);
         if (bound > key) {
             set_key(portals, *portal, bound);
             continue;
         }
-        if (!weigh(portals, top, weight)) return enf_fail_memory(error, "a silhouette");
+        if (!weigh(portals, *portal, weight)) return enf_fail_memory(error, "a silhouette");
         set_key(portals, *portal, fmax(key, *weight));
     }
     *weight = INFINITY;
@@ -286,25 +293,28 @@ static bool same_normal(const double a[3], const double b[3]) {
 }
 
 /// Two portals to the same cell become one. What is known of the silhouettes stays true if the normal stays.
-static void join_portals(enf_portal_heap *portals, int32_t number, int side, const enf_portal *other,
+static void join_portals(enf_portal_heap *portals, int32_t number, int side, int32_t other_number,
                          int other_side) {
     enf_portal *portal = &portals->portals[number];
+    const enf_portal *other = &portals->portals[other_number];
+    double *own = portals->shapes[number].silhouette;
+    const double *others = portals->shapes[other_number].silhouette;
     double before[3], before_other[3], normal[3];
-    normal_of(portals, portal, before);
-    normal_of(portals, other, before_other);
-    join_pieces(portals, portal, other, side == other_side ? 1 : -1);
-    normal_of(portals, portal, normal);
+    normal_of(portals, number, before);
+    normal_of(portals, other_number, before_other);
+    join_pieces(portals, number, other, &portals->shapes[other_number], side == other_side ? 1 : -1);
+    normal_of(portals, number, normal);
     if (!same_normal(before, normal))
-        for (int s = 0; s < 2; ++s) portal->silhouette[s] = portal->silhouette_at[s] = 0;
+        for (int s = 0; s < 2; ++s) own[s] = portal->silhouette_at[s] = 0;
     if (same_normal(before_other, normal)) {
-        portal->silhouette[side] = fmax(portal->silhouette[side], other->silhouette[other_side]);
+        own[side] = fmax(own[side], others[other_side]);
         if (portal->silhouette_at[!side] != portals->cells[portal->cell[!side]].age) {
-            portal->silhouette[!side] = fmax(portal->silhouette[!side], other->silhouette[!other_side]);
+            own[!side] = fmax(own[!side], others[!other_side]);
             portal->silhouette_at[!side] = other->silhouette_at[!other_side];
         }
     }
     portal->weighed_at = 0;
-    set_key(portals, number, bound_weight(portals, portal));
+    set_key(portals, number, bound_weight(portals, number));
 }
 
 /// Gives all portals of the gone cell to the kept one. False without memory.
@@ -322,7 +332,7 @@ static bool move_portals(enf_portal_heap *portals, int32_t kept, int32_t gone) {
         }
         unlink_portal(portals, number, !side);
         enf_block_heap_remove(&portals->heap, number);
-        join_portals(portals, twin, side_of(&portals->portals[twin], kept), portal, side);
+        join_portals(portals, twin, side_of(&portals->portals[twin], kept), number, side);
     }
     portals->cells[gone].first_portal = -1;
     portals->cells[gone].degree = 0;

@@ -29,10 +29,14 @@ typedef struct enf_portal {
                          ///< lower bound
     uint32_t
         silhouette_at[2]; ///< the age of the cell when its silhouette was computed; 0: it is a lower bound
+} enf_portal;
+
+/// What its weight is made of.
+typedef struct enf_portal_shape {
     double silhouette[2]; ///< of each cell, seen along the normal
     double area;          ///< of all pieces
     double sum[3];        ///< of the area vectors, from cell 0 to cell 1
-} enf_portal;
+} enf_portal_shape;
 
 /// What the portals of a cell have in common.
 typedef struct enf_portal_cell {
@@ -47,9 +51,11 @@ typedef struct enf_portal_heap {
     enf_heuristic heuristic;
     int32_t portal_count;
     enf_portal *portals;
-    int32_t *piece_next;  ///< for each piece the next one of the same portal, or -1
-    enf_pair_table table; ///< two cells -> their portal
-    enf_block_heap heap;  ///< which is the lightest
+    enf_portal_shape *shapes; ///< apart: two arrays find room more easily than one, and are not always both
+                              ///< looked at
+    int32_t *piece_next;      ///< for each piece the next one of the same portal, or -1
+    enf_pair_table table;     ///< two cells -> their portal
+    enf_block_heap heap;      ///< which is the lightest
     enf_portal_cell *cells;
     size_t evaluations; ///< weights computed
 } enf_portal_heap;

@@ -180,6 +180,16 @@ enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, in
     return ENF_OK;
 }
 
+bool enf_instance_get_transform(const enf_instance *instance, int32_t portal, int32_t *to,
+                                double matrix[12]) {
+    if (portal < 0 || portal >= instance->view->portal_count || !instance->transforms) return false;
+    const transform *transform = instance->transforms[portal];
+    if (!transform || !transform->used) return false;
+    *to = transform->to;
+    memcpy(matrix, transform->matrix, sizeof transform->matrix);
+    return true;
+}
+
 bool enf_instance_is_changed(const enf_instance *instance) {
     return instance &&
            (instance->transforms || atomic_load_explicit(&instance->touched, memory_order_acquire));

@@ -2,6 +2,7 @@
 // Reading the lists of objects.
 #include "run/objects.h"
 
+#include "run/object_images.h"
 #include "run/query.h"
 #include "run/shape.h"
 
@@ -80,7 +81,7 @@ static void put_list(listing *l, int32_t list, int32_t position) {
     for (int32_t i = l->objects->lists[list].first; i >= 0; i = l->objects->links[i].behind) {
         int32_t object = l->objects->links[i].object;
         if (!is_first(l->objects, l->query, object, position)) continue;
-        enf_object_seen seen = {handle_of(l->objects, object), position, l->space};
+        enf_object_seen seen = {handle_of(l->objects, object), position, l->space, -1};
         if (l->count < l->capacity) memcpy(l->out + (size_t)l->count * l->size, &seen, l->size);
         if (l->count < INT32_MAX) l->count++;
     }
@@ -120,8 +121,8 @@ int32_t enf_objects_in_cells(const enf_objects *objects, enf_query *query, const
     return l.count;
 }
 
-int32_t enf_objects_in_view(const enf_objects *objects, enf_query *query, const enf_visible *visible,
-                            enf_object_seen *out, int32_t capacity) {
+int32_t enf_objects_in_view(const enf_objects *objects, enf_query *query, const enf_instance *instance,
+                            const enf_visible *visible, enf_object_seen *out, int32_t capacity) {
     listing l = {.objects = objects,
                  .query = query,
                  .entries = visible->entries,
@@ -130,7 +131,9 @@ int32_t enf_objects_in_view(const enf_objects *objects, enf_query *query, const 
                  .size = sizeof *out,
                  .capacity = capacity};
     for (; l.space < visible->space_count; l.space++) put_cells(&l);
-    return l.count;
+    enf_seen_list list = {out, l.count, capacity};
+    enf_object_images_add(&list, objects, query, instance, visible);
+    return list.count;
 }
 
 bool enf_objects_meets(const enf_objects *objects, enf_object object, const double (*planes)[4],

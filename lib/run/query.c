@@ -10,6 +10,7 @@
 #include "run/open.h"
 #include "run/shape.h"
 #include "run/take.h"
+#include "run/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -130,10 +131,12 @@ static bool meets_sphere(const enf_shape *shape, double reach, const enf_file_po
     return !(square > limit * limit);
 }
 
+/// `before`: only polygons that do not have the shape's centre behind them.
 static bool meets_portal(const enf_file_view *view, const enf_shape *shape, const enf_file_portal *portal,
-                         const enf_passage *passage, double slack) {
+                         const enf_passage *passage, double slack, bool before) {
     for (int32_t i = 0; i < portal->polygon_count; i++) {
         const enf_file_portal_polygon *polygon = &view->portal_polygons[portal->polygon_first + i];
+        if (before && enf_dot(polygon->plane, shape->centre) + polygon->plane[3] < -slack) continue;
         enf_face face = {.vertices = view->portal_vertices + polygon->vertex_first,
                          .count = polygon->vertex_count,
                          .normal = {polygon->plane[0], polygon->plane[1], polygon->plane[2]},
@@ -154,12 +157,20 @@ static void cross_portals(enf_query *query, const enf_instance *instance, enf_fl
         if (!meets_sphere(shape, size, portal, slack)) continue;
         enf_passage passage = enf_instance_passage(instance, view, number);
         if (passage.to < 0 || (!passage.matrix && is_covered(query, passage.to, from.image))) continue;
-        if (!meets_portal(view, shape, portal, &passage, slack)) continue;
+        if (!meets_portal(view, shape, portal, &passage, slack, false)) continue;
         if (passage.matrix)
             reach_transformed(query, passage.to, number, from.image, passage.matrix);
         else
             reach(query, passage.to, number, from.image);
     }
+}
+
+bool enf_query_enters(const enf_query *query, const enf_shape *shape, int32_t number,
+                      const enf_passage *passage) {
+    const enf_file_portal *portal = &query->view->portals[number];
+    const double slack = enf_query_slack(query, shape);
+    return meets_sphere(shape, enf_shape_reach(shape), portal, slack) &&
+           meets_portal(query->view, shape, portal, passage, slack, true);
 }
 
 void enf_query_flood(enf_query *query, const enf_instance *instance, int32_t start, const enf_shape *shape) {

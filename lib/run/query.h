@@ -6,6 +6,8 @@
 #include "enfilade/query.h"
 #include "run/query_near.h"
 
+struct enf_passage;
+
 /// A cell reached, in the order in which the flood found it.
 typedef struct enf_flooded {
     int32_t cell, portal, image;
@@ -44,6 +46,10 @@ static inline void enf_query_mark(enf_query *query, int32_t cell, int32_t number
 
 /// Fills flooded, images and complete, from a cell or -1. The shape must be valid.
 void enf_query_flood(enf_query *query, const enf_instance *instance, int32_t start, const enf_shape *shape);
+
+/// Does a shape whose centre is on the side that the portal leads from reach into it?
+bool enf_query_enters(const enf_query *query, const enf_shape *shape, int32_t portal,
+                      const struct enf_passage *passage);
 
 /// A distance that still counts as none where the shape is.
 double enf_query_slack(const enf_query *query, const enf_shape *shape);

@@ -21,7 +21,7 @@ static bool add_body(enf_bodies *bodies, size_t *capacity, const enf_file_view *
     return true;
 }
 
-static bool make_bodies(enf_bodies *bodies, const enf_file_view *view) {
+static bool make_bodies(enf_bodies *bodies, const enf_file_view *view, int threads) {
     const size_t fine_count = (size_t)view->fine_count;
     enf_fine_vertices list = {0};
     size_t capacity = 0;
@@ -36,13 +36,14 @@ static bool make_bodies(enf_bodies *bodies, const enf_file_view *view) {
     }
     if (good) bodies->cell_first[view->fine_count] = bodies->count;
     free(list.vertices);
-    return good && enf_bodies_finish(bodies);
+    return good && enf_bodies_finish(bodies, threads);
 }
 
 enf_status enf_air_fine_make(enf_portal_graph *leafs, enf_air_parts *parts, const enf_file_view *view,
-                             enf_error *error) {
+                             int threads, enf_error *error) {
     *parts = (enf_air_parts){0};
     enf_status status = enf_world_graph_make_fine(leafs, view, error);
-    if (!status && !make_bodies(&parts->bodies, view)) status = enf_fail_memory(error, "the fine cells");
+    if (!status && !make_bodies(&parts->bodies, view, threads))
+        status = enf_fail_memory(error, "the fine cells");
     return status;
 }

@@ -7,9 +7,9 @@
 #include "visibility/air_parts.h"
 #include "visibility/portal_graph.h"
 
-/// Each fine cell of a kept region is a body, in a leaf of its own. Needs the exact part of the file. Both
-/// are overwritten; free them in any case.
+/// Each fine cell of a kept region is a body, in a leaf of its own; made on some threads. Needs the exact
+/// part of the file. Both are overwritten; free them in any case.
 enf_status enf_air_fine_make(enf_portal_graph *leafs, enf_air_parts *parts, const enf_file_view *view,
-                             enf_error *error);
+                             int threads, enf_error *error);
 
 #endif

@@ -21,7 +21,6 @@ typedef struct sheet {
 typedef struct maker {
     enf_portal_graph *graph;
     const enf_air_tree *tree;
-    const enf_walls *walls;
     const enf_air_parts *parts;
     int32_t *parent; ///< per node; -1: the root
     bool *has_air;   ///< per node: some leaf below is air
@@ -109,8 +108,8 @@ static bool append(sheets *sheets, const sheet *sheet) {
 /// length.
 static bool find_edge(const maker *maker, const enf_wall *wall, int32_t edge, double outwards[3],
                       double *offset) {
-    const double *a = maker->walls->corners[wall->first + edge];
-    const double *b = maker->walls->corners[wall->first + (edge + 1 < wall->count ? edge + 1 : 0)];
+    const double(*corners)[3] = (const double(*)[3])(maker->tree->thin.corners + wall->first);
+    const double *a = corners[edge], *b = corners[edge + 1 < wall->count ? edge + 1 : 0];
     for (int axis = 0; axis < 3; axis++) {
         int u = (axis + 1) % 3, v = (axis + 2) % 3;
         outwards[axis] = (b[u] - a[u]) * wall->normal[v] - (b[v] - a[v]) * wall->normal[u];
@@ -170,7 +169,7 @@ static bool pierce(maker *maker, int32_t behind, int32_t front, const sheet *she
     int now = 0;
     bool good = append(&lists[now], sheet);
     for (int32_t i = 0; good && i < maker->node->wall_count; i++, now = !now) {
-        const enf_wall *wall = &maker->walls->walls[maker->tree->thin_walls[maker->node->wall_first + i]];
+        const enf_wall *wall = &maker->tree->thin.walls[maker->node->wall_first + i];
         lists[!now].count = 0;
         for (int32_t s = 0; good && s < lists[now].count; s++)
             good = take_out_of(maker, wall, &lists[now].items[s], &lists[!now]);
@@ -270,9 +269,9 @@ static void find_relations(maker *maker) {
         }
 }
 
-enf_status enf_air_openings_make(enf_portal_graph *graph, const enf_air_tree *tree, const enf_walls *walls,
+enf_status enf_air_openings_make(enf_portal_graph *graph, const enf_air_tree *tree,
                                  const enf_air_parts *parts, double size, enf_error *error) {
-    maker maker = {.graph = graph, .tree = tree, .walls = walls, .parts = parts, .size = size};
+    maker maker = {.graph = graph, .tree = tree, .parts = parts, .size = size};
     *graph = (enf_portal_graph){.cell_count = parts->bodies.cell_count};
     maker.parent = enf_array_new((size_t)tree->node_count, sizeof *maker.parent);
     maker.has_air = enf_array_zeroed((size_t)tree->node_count, sizeof *maker.has_air);

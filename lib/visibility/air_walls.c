@@ -2,6 +2,7 @@
 #include "visibility/air_walls.h"
 
 #include "base/array.h"
+#include "base/parallel.h"
 #include "format/frame.h"
 #include "visibility/flat_hull.h"
 #include "visibility/window.h"
@@ -91,9 +92,18 @@ typedef struct closed {
     int32_t *first;  ///< mesh_polygon_count + 1 offsets into pieces
     int32_t *pieces; ///< then the sealed ones
     int32_t sealed;  ///< how many of those
-    double (*corners)[3];
-    size_t capacity;
 } closed;
+
+/// Of the occluders, however many threads there are.
+enum { SHARES = 64 };
+
+/// The walls of some occluders.
+typedef struct share {
+    enf_walls walls;
+    double (*corners)[3]; ///< scratch
+    size_t capacity;
+    bool good;
+} share;
 
 /// How many of the two fine cells at a piece are kept.
 static int count_kept(const enf_file_view *view, int32_t piece) {
@@ -121,16 +131,16 @@ static bool sort_pieces(closed *closed, const enf_file_view *view) {
 }
 
 /// Appends the corners of a piece, or of its facet if it has none of its own.
-static bool take_corners(closed *closed, const enf_file_view *view, int32_t piece, int32_t *count) {
+static bool take_corners(share *share, const enf_file_view *view, int32_t piece, int32_t *count) {
     const int32_t *offset = &view->piece_offset[piece];
     const enf_file_corner *corners = view->piece_corners;
     if (offset[0] == offset[1]) {
         offset = &view->facet_offset[view->piece_facet[piece]];
         corners = view->facet_corners;
     }
-    if (!enf_array_reserve(closed->corners, closed->capacity, *count + offset[1] - offset[0])) return false;
+    if (!enf_array_reserve(share->corners, share->capacity, *count + offset[1] - offset[0])) return false;
     for (int64_t i = offset[0]; i < offset[1]; i++)
-        enf_view_to_world(view, view->vertex_position[corners[i].vertex], closed->corners[(*count)++]);
+        enf_view_to_world(view, view->vertex_position[corners[i].vertex], share->corners[(*count)++]);
     return true;
 }
 
@@ -151,34 +161,76 @@ static bool find_plane(const enf_file_view *view, const int32_t points[3], enf_w
 }
 
 /// Adds the hull of the pieces of one occluder, or of one sealed piece.
-static bool add_wall(enf_walls *walls, closed *closed, const enf_file_view *view, const int32_t points[3],
+static bool add_wall(share *share, const closed *closed, const enf_file_view *view, const int32_t points[3],
                      int32_t begin, int32_t end) {
     enf_wall wall = {0};
     int32_t count = 0;
     for (int32_t i = begin; i < end; i++) {
-        if (!take_corners(closed, view, closed->pieces[i], &count)) return false;
+        if (!take_corners(share, view, closed->pieces[i], &count)) return false;
         wall.has_air_behind = wall.has_air_behind || count_kept(view, closed->pieces[i]) == 2;
     }
     if (count == 0 || !find_plane(view, points, &wall)) return true;
-    if (!enf_array_reserve(closed->corners, closed->capacity, 3 * count + 1)) return false;
-    int32_t made = enf_flat_hull(closed->corners, count, wall.normal, closed->corners + count);
-    return made < 3 || enf_walls_add(walls, &wall, (const double(*)[3])(closed->corners + count), made);
+    if (!enf_array_reserve(share->corners, share->capacity, 3 * count + 1)) return false;
+    int32_t made = enf_flat_hull(share->corners, count, wall.normal, share->corners + count);
+    return made < 3 ||
+           enf_walls_add(&share->walls, &wall, (const double(*)[3])(share->corners + count), made);
 }
 
-enf_status enf_air_walls_make(enf_walls *walls, const enf_file_view *view, enf_error *error) {
+typedef struct making {
+    const closed *closed;
+    const enf_file_view *view;
+    share shares[SHARES];
+} making;
+
+/// Occluders, then sealed pieces; as many of both in each share.
+static void make_share(void *user, int32_t number, int thread) {
+    making *making = user;
+    const closed *closed = making->closed;
+    const enf_file_view *view = making->view;
+    const int64_t polygons = view->mesh_polygon_count, all = polygons + closed->sealed;
+    share *share = &making->shares[number];
+    (void)thread;
+    share->good = true;
+    for (int64_t i = all * number / SHARES; share->good && i < all * (number + 1) / SHARES; i++) {
+        if (i < polygons) {
+            share->good = add_wall(share, closed, view, view->mesh_polygon_plane[i], closed->first[i],
+                                   closed->first[i + 1]);
+            continue;
+        }
+        const int32_t at = (int32_t)(closed->first[polygons] + i - polygons);
+        const int32_t plane = view->facet_plane[view->piece_facet[closed->pieces[at]]];
+        share->good = add_wall(share, closed, view, view->planes[plane], at, at + 1);
+    }
+}
+
+/// Appends walls. False without memory.
+static bool append(enf_walls *walls, const enf_walls *more) {
+    const int32_t first = walls->corner_count;
+    if (more->count == 0) return true;
+    if (!enf_array_reserve(walls->walls, walls->wall_capacity, walls->count + more->count) ||
+        !enf_array_reserve(walls->corners, walls->corner_capacity, first + more->corner_count))
+        return false;
+    memcpy(walls->corners + first, more->corners, (size_t)more->corner_count * sizeof *more->corners);
+    for (int32_t i = 0; i < more->count; i++) {
+        walls->walls[walls->count] = more->walls[i];
+        walls->walls[walls->count++].first += first;
+    }
+    walls->corner_count += more->corner_count;
+    return true;
+}
+
+enf_status enf_air_walls_make(enf_walls *walls, const enf_file_view *view, int threads, enf_error *error) {
     closed closed = {0};
     *walls = (enf_walls){0};
     bool good = sort_pieces(&closed, view);
-    for (int32_t i = 0; good && i < view->mesh_polygon_count; i++)
-        good =
-            add_wall(walls, &closed, view, view->mesh_polygon_plane[i], closed.first[i], closed.first[i + 1]);
-    for (int32_t i = 0; good && i < closed.sealed; i++) {
-        int32_t at = closed.first[view->mesh_polygon_count] + i;
-        int32_t plane = view->facet_plane[view->piece_facet[closed.pieces[at]]];
-        good = add_wall(walls, &closed, view, view->planes[plane], at, at + 1);
+    making making = {.closed = &closed, .view = view};
+    if (good) enf_parallel_for(&(enf_crew){.threads = threads}, SHARES, make_share, &making);
+    for (int i = 0; i < SHARES; i++) {
+        good = good && making.shares[i].good && append(walls, &making.shares[i].walls);
+        enf_walls_free(&making.shares[i].walls);
+        free(making.shares[i].corners);
     }
     free(closed.first);
     free(closed.pieces);
-    free(closed.corners);
     return good ? ENF_OK : enf_fail_memory(error, "the walls");
 }

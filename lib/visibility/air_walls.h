@@ -21,9 +21,9 @@ typedef struct enf_walls {
 } enf_walls;
 
 /// Of each occluder the convex hull of what touches kept cells (clean leaves convex occluders only), and
-/// sealed cracks one by one. Needs the exact part of the file (view->has_exact). *walls is overwritten; free
-/// it in any case.
-enf_status enf_air_walls_make(enf_walls *walls, const enf_file_view *view, enf_error *error);
+/// sealed cracks one by one, on some threads: what comes out is the same for any number. Needs the exact part
+/// of the file (view->has_exact). *walls is overwritten; free it in any case.
+enf_status enf_air_walls_make(enf_walls *walls, const enf_file_view *view, int threads, enf_error *error);
 
 /// Adds a wall; the corners are copied, and held by a sphere. False without memory.
 bool enf_walls_add(enf_walls *walls, const enf_wall *like, const double (*corners)[3], int32_t count);

@@ -70,25 +70,12 @@ static bool find_owners(enf_bodies *bodies) {
     return true;
 }
 
-/// Leaves each corner of an owner once.
-static bool drop_doubles(enf_bodies *bodies) {
-    enf_distinct distinct = {0};
-    int32_t kept = 0, count = 0;
-    for (int32_t o = 0; o < bodies->owner_count && count >= 0; o++) {
-        const int32_t first = bodies->whole_first[o];
-        count = enf_distinct_keep(&distinct, bodies->wholes + first, bodies->whole_first[o + 1] - first);
-        if (count > 0)
-            memmove(bodies->wholes + kept, bodies->wholes + first, (size_t)count * sizeof *bodies->wholes);
-        bodies->whole_first[o] = kept;
-        kept += count;
-    }
-    free(distinct.slots);
-    bodies->whole_first[bodies->owner_count] = kept;
-    return count >= 0;
-}
-
-bool enf_bodies_finish(enf_bodies *bodies) {
-    return find_boxes(bodies) && find_owners(bodies) && drop_doubles(bodies);
+bool enf_bodies_finish(enf_bodies *bodies, int threads) {
+    return find_boxes(bodies) && find_owners(bodies) &&
+           enf_distinct_keep_runs(&(enf_distinct_runs){.points = bodies->wholes,
+                                                       .first = bodies->whole_first,
+                                                       .count = bodies->owner_count},
+                                  threads);
 }
 
 void enf_bodies_free(enf_bodies *bodies) {

@@ -24,8 +24,8 @@ typedef struct enf_bodies {
     double (*wholes)[3];  ///< the corners of all bodies of each owner, each once
 } enf_bodies;
 
-/// Finds the rest, when the first part is there. False without memory.
-bool enf_bodies_finish(enf_bodies *bodies);
+/// Finds the rest, when the first part is there, on some threads. False without memory.
+bool enf_bodies_finish(enf_bodies *bodies, int threads);
 
 void enf_bodies_free(enf_bodies *bodies);
 

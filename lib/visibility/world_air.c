@@ -17,10 +17,10 @@ static double size_of(const enf_file_view *view) {
     return size;
 }
 
-static enf_status partition(enf_world_air *air, const enf_air_tree *tree, const enf_walls *walls,
-                            const enf_file_view *view, double size, int threads, enf_error *error) {
+static enf_status partition(enf_world_air *air, const enf_air_tree *tree, const enf_file_view *view,
+                            double size, int threads, enf_error *error) {
     enf_status status = enf_air_parts_make(&air->parts, tree, view, threads, error);
-    if (!status) status = enf_air_openings_make(&air->leafs, tree, walls, &air->parts, size, error);
+    if (!status) status = enf_air_openings_make(&air->leafs, tree, &air->parts, size, error);
     if (!status && !enf_air_order_make(&air->order, tree, air->parts.leaf_of, air->parts.bodies.cell_count))
         status = enf_fail_memory(error, "the order of the leafs");
     return status;
@@ -48,7 +48,7 @@ static int32_t find_leafs_most(double portals) {
 
 /// With leafs of some kind, portals of cells are worth looking at where a partition has more openings.
 static enf_status choose(enf_world_air *air, bool is_partitioned, bool only_partition,
-                         const enf_file_view *view, enf_error *error) {
+                         const enf_file_view *view, int threads, enf_error *error) {
     const double portals = air->portals.opening_count, leafs = air->leafs.opening_count;
     const bool has_partition = is_partitioned && leafs <= find_most(portals);
     air->uses_leafs = has_partition || (view->has_exact && !only_partition);
@@ -59,15 +59,16 @@ static enf_status choose(enf_world_air *air, bool is_partitioned, bool only_part
     enf_portal_graph_free(&air->leafs);
     enf_air_parts_free(&air->parts);
     enf_air_order_free(&air->order);
-    return enf_air_fine_make(&air->leafs, &air->parts, view, error);
+    return enf_air_fine_make(&air->leafs, &air->parts, view, threads, error);
 }
 
 /// Gives up before it begins where planes are too many.
-static enf_air_outcome make_tree(enf_air_tree *tree, enf_walls *walls, double size, int32_t leafs_most) {
+static enf_air_outcome make_tree(enf_air_tree *tree, enf_walls *walls, double size, int32_t leafs_most,
+                                 int threads) {
     const int32_t planes = enf_walls_count_planes(walls, size);
     if (planes < 0) return ENF_AIR_NO_MEMORY;
     if (planes > planes_share * leafs_most) return ENF_AIR_TOO_DEEP;
-    return enf_air_tree_make(tree, walls, size, leafs_most);
+    return enf_air_tree_make(tree, walls, size, leafs_most, threads);
 }
 
 enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, bool only_partition, int threads,
@@ -79,13 +80,13 @@ enf_status enf_world_air_make(enf_world_air *air, const enf_file_view *view, boo
     double size = size_of(view);
     enf_status status = enf_world_graph_make(&air->portals, view, error);
     if (!status && view->has_exact) {
-        status = enf_air_walls_make(&walls, view, error);
-        if (!status) outcome = make_tree(&tree, &walls, size, find_leafs_most(air->portals.opening_count));
+        status = enf_air_walls_make(&walls, view, threads, error);
+        if (!status)
+            outcome = make_tree(&tree, &walls, size, find_leafs_most(air->portals.opening_count), threads);
         if (outcome == ENF_AIR_NO_MEMORY) status = enf_fail_memory(error, "the partition of the air");
     }
-    if (!status && outcome == ENF_AIR_DONE)
-        status = partition(air, &tree, &walls, view, size, threads, error);
-    if (!status) status = choose(air, outcome == ENF_AIR_DONE, only_partition, view, error);
+    if (!status && outcome == ENF_AIR_DONE) status = partition(air, &tree, view, size, threads, error);
+    if (!status) status = choose(air, outcome == ENF_AIR_DONE, only_partition, view, threads, error);
     enf_air_tree_free(&tree);
     enf_walls_free(&walls);
     return status;

@@ -59,6 +59,11 @@ ENF_API enf_door enf_instance_get_door(const enf_instance *instance, int32_t por
 ENF_API enf_status enf_instance_set_transform(enf_instance *instance, int32_t portal, int32_t to,
                                               const double matrix[12], enf_error *error);
 
+/// Where what passes a portal comes out: its cell, and the matrix. False, with both as they were, if the
+/// portal does not transform, or the world does not have it.
+ENF_API bool enf_instance_get_transform(const enf_instance *instance, int32_t portal, int32_t *to,
+                                        double matrix[12]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -98,19 +98,32 @@ ENF_API int32_t enf_objects_in_cells(const enf_objects *objects, enf_query *quer
 /// An object in a cell that a view lists.
 typedef struct enf_object_seen {
     enf_object object;
-    int32_t entry; ///< the first one, in the view's list, whose cell the object is in; -1: everywhere
-    int32_t space; ///< in which it is seen: visible->spaces[space].to_camera carries it to where the camera
-                   ///< shows it, and .plane cuts off what lies before the portal
+    int32_t entry;  ///< the first one, in the view's list, whose cell the object is in; -1: everywhere
+    int32_t space;  ///< in which it is seen: visible->spaces[space].to_camera carries it to where the camera
+                    ///< shows it, and .plane cuts off what lies before the portal
+    int32_t portal; ///< -1: the object itself. Otherwise its image: it reaches into this portal, which
+                    ///< transforms, and what lies beyond the portal's plane comes out here: to be drawn with
+                    ///< the portal's matrix (enf_instance_get_transform) before the space's
 } enf_object_seen;
 
 /// The objects of the cells that a view has listed, as far as they fit: once for each space in which one of
 /// their cells is listed. So an object that stands before a mirror comes twice, in the world itself and in
 /// the mirror's space, if the view lists its cell in both; and one in the room to which a portal leads comes
 /// in the space behind that portal. Returns how many there are. Spaces come in their order; in each, objects
-/// in the order of the entries, then, if there was an entry, those of ENF_LIST_EVERYWHERE. An object is where
-/// it was put: one that reaches into a portal that transforms has no part beyond it (enf_query_cells finds
-/// its image there). `visible`: of a view of the same world. `query` is lent as above.
-ENF_API int32_t enf_objects_in_view(const enf_objects *objects, enf_query *query, const enf_visible *visible,
+/// in the order of the entries, then, if there was an entry, those of ENF_LIST_EVERYWHERE.
+///
+/// Then come images. An object on its way through a portal that transforms has its centre before it, in the
+/// cell that the portal leads from, and a part beyond: that part is in the cells that the object, carried by
+/// the portal's matrix, touches from the cell where the portal leads. Its image is listed once for each space
+/// in which one of these is, portal by portal, also where the object itself is not seen. When its centre has
+/// passed, put the object there (enf_objects_move); if the way back is set, too, its image is what is left
+/// behind. A mirror, a reflection that leads back to its own cell, lets nothing through; nor does a closed
+/// door. An image that reaches into another such portal has no further one.
+///
+/// `instance`, which may be null, and `visible`: of the view's run, of the same world. `query` is lent as
+/// above.
+ENF_API int32_t enf_objects_in_view(const enf_objects *objects, enf_query *query,
+                                    const enf_instance *instance, const enf_visible *visible,
                                     enf_object_seen *out, int32_t capacity);
 
 /// False if the object lies wholly behind one of the planes (a, b, c, d: in front where a x + b y + c z + d
