@@ -86,9 +86,16 @@ static enf_status throw_lines(const request *request, const enf_file_view *view,
     return status;
 }
 
+/// An image owns no more than so many arrays: those that have come since are dropped.
+static void drop_new(enf_build_image *image, const enf_build_image *before) {
+    while (image->owned_count > before->owned_count) free(image->owned[--image->owned_count]);
+    image->view = before->view;
+}
+
 static enf_status find_sets(const request *request, enf_build_image *image, row *row, enf_error *error) {
     const enf_visibility_options options = {.method = (enf_method)request->method,
                                             .threads = request->settings.threads};
+    const enf_build_image before = *image;
     double seconds[RUNS_MOST];
     enf_status status = ENF_OK;
     for (int run = 0; run < request->runs && !status; run++) {
@@ -101,6 +108,7 @@ static enf_status find_sets(const request *request, enf_build_image *image, row 
             status = throw_lines(request, &image->view, &visibility.pvs, row, error);
         }
         enf_visibility_free(&visibility);
+        drop_new(image, &before);
     }
     row->pvs = status ? 0 : cli_median(seconds, (size_t)request->runs);
     return status;

@@ -160,13 +160,14 @@ static void put_in_the_portal(void *user, const scene_ray *before, double t, con
     *handle = (enf_object){0, 0};
 }
 
-/// Does a sphere reach into the portal, at least as far as its planes tell?
+/// Does a sphere that stands before the portal reach into it, at least as far as its planes tell?
 static bool may_reach(const enf_file_view *file, int32_t portal, const enf_shape *shape) {
     const enf_file_portal *p = &file->portals[portal];
-    for (int32_t i = 0; i < p->polygon_count; i++)
-        if (fabs(scene_step_off(file->portal_polygons[p->polygon_first + i].plane, shape->centre)) <
-            shape->radius + 1e-6)
-            return true;
+    for (int32_t i = 0; i < p->polygon_count; i++) {
+        const double height =
+            scene_step_off(file->portal_polygons[p->polygon_first + i].plane, shape->centre);
+        if (height > -1e-6 && height < shape->radius + 1e-6) return true;
+    }
     return false;
 }
 
