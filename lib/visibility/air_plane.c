@@ -18,7 +18,7 @@ enum { DEPTH_PEELED = 100, PEELED_MOST = 64 };
 static const double peeled_share = 0.95;
 
 /// Parts of fewer walls are not worth a second thread; nor are more than so many for the largest.
-enum { SHARED_LEAST = 1000, THREADS_MOST = 16 };
+enum { SHARED_LEAST = 300, THREADS_MOST = 16 };
 
 /// The walls of a part, by their sides of a plane.
 typedef struct census {

@@ -21,7 +21,7 @@ static const double relative_tolerance = 0x1p-40;
 static const double growth_most = 32;
 
 /// Branches have this part of all walls at most, and no less than so many.
-enum { BRANCH_PART = 12, BRANCH_LEAST = 200 };
+enum { BRANCH_PART = 4, BRANCH_LEAST = 200 };
 
 /// Branches as children: so much and the number of the branch.
 enum { BRANCHES = 1 << 30 };
