@@ -97,7 +97,7 @@ static void assert_not_much_wider(const box *boxes, const int32_t *owners, int32
         whole += find_width(boxes, owners, count, way);
         for (int32_t i = 0; i < count; i++) own[i] += find_width(boxes, &owners[i], 1, way);
     }
-    for (int32_t i = 0; i < count; i++) assert_true(whole < 1.6 * own[i]);
+    for (int32_t i = 0; i < count; i++) assert_true(whole < 1.8 * own[i]);
 }
 
 static bool has(const int32_t *items, int32_t count, int32_t item) {

@@ -4,6 +4,7 @@
 #include "visibility/air_openings.h"
 
 #include "base/array.h"
+#include "base/parallel.h"
 #include "visibility/flat_hull.h"
 #include "visibility/winding.h"
 #include "visibility/window.h"
@@ -269,17 +270,62 @@ static void find_relations(maker *maker) {
         }
 }
 
+// ---------------------------------------------------------------------------------------------- all
+
+/// Of the nodes, however many threads there are.
+enum { SHARES = 64 };
+
+/// The openings of some nodes.
+typedef struct share {
+    enf_portal_graph graph; ///< not finished
+    bool good;
+} share;
+
+typedef struct making {
+    const maker *maker; ///< as each share begins
+    share shares[SHARES];
+} making;
+
+static void open_share(void *user, int32_t number, int thread) {
+    making *making = user;
+    share *share = &making->shares[number];
+    maker maker = *making->maker;
+    const int64_t nodes = maker.tree->node_count;
+    (void)thread;
+    maker.graph = &share->graph;
+    share->good = true;
+    for (int64_t i = nodes * number / SHARES; share->good && i < nodes * (number + 1) / SHARES; i++)
+        share->good = open_node(&maker, (int32_t)i);
+    free(maker.stack);
+}
+
+/// Appends openings. False without memory.
+static bool take_openings(enf_portal_graph *graph, const enf_portal_graph *from) {
+    bool good = true;
+    for (int32_t i = 0; good && i < from->opening_count; i++)
+        good = enf_portal_graph_add(graph, from->opening_cell[i][0], from->opening_cell[i][1],
+                                    (const double(*)[3])(from->corners + from->opening_corner[i]),
+                                    from->opening_corner[i + 1] - from->opening_corner[i]);
+    return good;
+}
+
 enf_status enf_air_openings_make(enf_portal_graph *graph, const enf_air_tree *tree,
-                                 const enf_air_parts *parts, double size, enf_error *error) {
-    maker maker = {.graph = graph, .tree = tree, .parts = parts, .size = size};
+                                 const enf_air_parts *parts, double size, int threads, enf_error *error) {
+    maker maker = {.tree = tree, .parts = parts, .size = size};
+    making making = {.maker = &maker};
     *graph = (enf_portal_graph){.cell_count = parts->bodies.cell_count};
     maker.parent = enf_array_new((size_t)tree->node_count, sizeof *maker.parent);
     maker.has_air = enf_array_zeroed((size_t)tree->node_count, sizeof *maker.has_air);
     bool good = maker.parent && maker.has_air;
-    if (good) find_relations(&maker);
-    for (int32_t i = 0; good && i < tree->node_count; i++) good = open_node(&maker, i);
+    if (good) {
+        find_relations(&maker);
+        enf_parallel_for(&(enf_crew){.threads = threads}, SHARES, open_share, &making);
+    }
+    for (int i = 0; i < SHARES; i++) {
+        good = good && making.shares[i].good && take_openings(graph, &making.shares[i].graph);
+        enf_portal_graph_free(&making.shares[i].graph);
+    }
     free(maker.parent);
     free(maker.has_air);
-    free(maker.stack);
     return good ? enf_portal_graph_finish(graph, error) : enf_fail_memory(error, "the openings");
 }

@@ -6,9 +6,10 @@
 #include "visibility/air_parts.h"
 #include "visibility/portal_graph.h"
 
-/// Makes the portal graph of the leafs that are air, finished. Thin walls are cut out of the openings. `size`
-/// is the largest coordinate in magnitude. *graph is overwritten; free it in any case.
+/// Makes the portal graph of the leafs that are air, finished, on some threads: it is the same for any
+/// number. Thin walls are cut out of the openings. `size` is the largest coordinate in magnitude. *graph is
+/// overwritten; free it in any case.
 enf_status enf_air_openings_make(enf_portal_graph *graph, const enf_air_tree *tree,
-                                 const enf_air_parts *parts, double size, enf_error *error);
+                                 const enf_air_parts *parts, double size, int threads, enf_error *error);
 
 #endif

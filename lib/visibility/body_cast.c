@@ -6,6 +6,7 @@
 #include "base/timer.h"
 #include "visibility/body_beams.h"
 #include "visibility/coding.h"
+#include "visibility/symmetry.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -129,15 +130,6 @@ static void sum_up(const casting *casting) {
     }
 }
 
-/// Lines go both ways.
-static void symmetrise(enf_bits *met) {
-    for (int32_t i = 0; i < met->row_count; i++) {
-        uint64_t *row = enf_bits_row(met, i);
-        for (int32_t k = -1; (k = enf_bit_next(row, met->row_words, k + 1)) >= 0;)
-            if (!enf_bit_get(enf_bits_row(met, k), i)) enf_bit_clear(row, k);
-    }
-}
-
 /// What the results depend on, besides the graph; for checkpoints.
 static uint64_t find_key(const casting *casting) {
     const enf_body_cast *cast = casting->cast;
@@ -175,6 +167,6 @@ enf_status enf_body_cast_run(enf_body_cast *cast, enf_workplace *place, enf_erro
     }
     if (!status) sum_up(&casting);
     free_casting(&casting, threads);
-    if (!status) symmetrise(&cast->met);
+    if (!status) enf_symmetry_keep(&cast->met);
     return status;
 }

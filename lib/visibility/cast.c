@@ -6,6 +6,7 @@
 #include "visibility/beams.h"
 #include "visibility/coding.h"
 #include "visibility/facing.h"
+#include "visibility/symmetry.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -232,6 +233,6 @@ enf_status enf_cast_run(enf_cast *cast, enf_sightings *sightings, enf_workplace 
     }
     if (!status) sum_up(&casting);
     free_casting(&casting, threads);
-    if (!status) enf_facing_symmetrise(&cast->beams);
+    if (!status) enf_symmetry_keep_twins(&cast->beams);
     return status;
 }

@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "visibility/beyond.h"
 #include "visibility/follows.h"
+#include "visibility/symmetry.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -124,56 +125,6 @@ static bool make_faces(search *search) {
     return search->faces != NULL;
 }
 
-// ---------------------------------------------------------------------------------------------- symmetry
-
-enum { BLOCK = 64 };
-
-/// Turns 64 by 64 bits over: bit j of word i and bit i of word j change places (H. S. Warren, "Hacker's
-/// Delight", 2002).
-static void transpose(uint64_t block[BLOCK]) {
-    uint64_t mask = UINT32_MAX;
-    for (int step = BLOCK / 2; step; step /= 2, mask ^= mask << step)
-        for (int i = 0; i < BLOCK; i = (i + step + 1) & ~step) {
-            const uint64_t changed = (block[i] >> step ^ block[i + step]) & mask;
-            block[i] ^= changed << step;
-            block[i + step] ^= changed;
-        }
-}
-
-/// Takes the twins' pairs the other way round: bit twin(p) of row twin(q), as bit q of row p of the block
-/// whose rows are the columns of this one. False if there are none.
-static bool take_twins(const enf_bits *bits, int32_t row_block, int32_t column_block, uint64_t block[BLOCK]) {
-    uint64_t any = 0;
-    for (int32_t i = 0; i < BLOCK; i++) {
-        const int32_t row = row_block * BLOCK + (i ^ 1);
-        const uint64_t word = row < bits->row_count ? enf_bits_row(bits, row)[column_block] : 0;
-        const uint64_t even = UINT64_C(0x5555555555555555);
-        block[i] = (word & even) << 1 | (word >> 1 & even);
-        any |= word;
-    }
-    if (any) transpose(block);
-    return any;
-}
-
-static void keep_pairs(const enf_bits *bits, int32_t row_block, int32_t column_block,
-                       const uint64_t block[BLOCK]) {
-    for (int32_t i = 0; i < BLOCK && row_block * BLOCK + i < bits->row_count; i++)
-        enf_bits_row(bits, row_block * BLOCK + i)[column_block] &= block[i];
-}
-
-/// By blocks of 64 by 64, as bit by bit most are far from each other in memory.
-void enf_facing_symmetrise(enf_bits *bits) {
-    const int32_t blocks = (bits->row_count + BLOCK - 1) / BLOCK;
-    uint64_t one[BLOCK], other[BLOCK];
-    for (int32_t r = 0; r < blocks; r++)
-        for (int32_t c = r; c < blocks; c++) {
-            const bool some = take_twins(bits, r, c, one);
-            if (!take_twins(bits, c, r, other) && !some) continue;
-            keep_pairs(bits, c, r, one);
-            if (c > r) keep_pairs(bits, r, c, other);
-        }
-}
-
 // ---------------------------------------------------------------------------------------------- all
 
 static bool make_search(search *search, int threads) {
@@ -210,6 +161,6 @@ enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, bool exac
     free_search(&search, crew->threads);
     if (!good) return enf_fail_memory(error, "the portals that face each other");
     if (!done) return enf_fail(error, ENF_NO_RESOURCES, "cancelled");
-    enf_facing_symmetrise(facing);
+    enf_symmetry_keep_twins(facing);
     return ENF_OK;
 }

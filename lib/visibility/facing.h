@@ -19,7 +19,4 @@ enf_status enf_facing_find(enf_bits *facing, const enf_shapes *shapes, bool exac
 /// the shapes?
 bool enf_portals_face(const enf_shapes *shapes, int32_t portal, int32_t other);
 
-/// Clears every bit q of row p without bit twin(p) of row twin(q).
-void enf_facing_symmetrise(enf_bits *bits);
-
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What beams come from: owners of bodies, some together. Beams from the hull of owners that lie close
 // together meet all that beams from each would meet, and little more; and as two owners see each other only
-// if beams of each meet a body of the other itself, little of that stays. (It saves an eighth of the visits,
-// and adds six pairs in a thousand.)
+// if beams of each meet a body of the other itself, little of that stays. (It saves a sixth to a quarter of
+// the time, and adds one or two pairs in a hundred.)
 #ifndef ENF_VISIBILITY_SOURCES_H
 #define ENF_VISIBILITY_SOURCES_H
 

@@ -20,7 +20,7 @@ static double size_of(const enf_file_view *view) {
 static enf_status partition(enf_world_air *air, const enf_air_tree *tree, const enf_file_view *view,
                             double size, int threads, enf_error *error) {
     enf_status status = enf_air_parts_make(&air->parts, tree, view, threads, error);
-    if (!status) status = enf_air_openings_make(&air->leafs, tree, &air->parts, size, error);
+    if (!status) status = enf_air_openings_make(&air->leafs, tree, &air->parts, size, threads, error);
     if (!status && !enf_air_order_make(&air->order, tree, air->parts.leaf_of, air->parts.bodies.cell_count))
         status = enf_fail_memory(error, "the order of the leafs");
     return status;

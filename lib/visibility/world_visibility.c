@@ -46,8 +46,7 @@ static void see_for_lost(enf_pvs *cells, const enf_world_air *air, const enf_fil
 
 static void take_owners(enf_pvs *cells, const enf_bits *met) {
     for (int32_t i = 0; i < cells->cell_count; i++)
-        for (int32_t k = -1; (k = enf_bit_next(enf_bits_row(met, i), met->row_words, k + 1)) >= 0;)
-            enf_pvs_set(cells, i, k);
+        for (size_t w = 0; w < cells->row_words; w++) enf_pvs_row(cells, i)[w] |= enf_bits_row(met, i)[w];
 }
 
 static void join_all_leafs(enf_pvs *cells, const enf_visibility *found, const enf_bodies *bodies) {
