@@ -45,9 +45,8 @@ typedef struct seeker {
     size_t count;
     double reach; ///< in the same unit
     enf_pieces pieces;
-    facing *facings; ///< by falling area, once that is needed
+    facing *facings; ///< in canonical order; by falling area, once that is needed
     size_t facing_count;
-    bool sorted;
     double total; ///< area
     double axes[3][3];
 } seeker;
@@ -144,8 +143,7 @@ static int compare_facings(const void *left, const void *right) {
 
 /// Largest first. Most soups turn out not to need it.
 static void sort_facings(seeker *s) {
-    if (!s->sorted) qsort(s->facings, s->facing_count, sizeof *s->facings, compare_facings);
-    s->sorted = true;
+    qsort(s->facings, s->facing_count, sizeof *s->facings, compare_facings);
 }
 
 /// The polygons in canonical order.
@@ -204,13 +202,10 @@ static int axis_of_facing(const seeker *s, size_t i) {
     return flat_axis(extent, s->reach, 0);
 }
 
-/// The area square to each of the axes; returns their sum.
-static double measure_aligned(seeker *s, double area[3]) {
-    size_t begin = 0;
+/// The area square to each of the axes; returns their sum. (Sums depend on the order, which is canonical both
+/// before facings are sorted and after.)
+static double measure_aligned(const seeker *s, double area[3]) {
     area[0] = area[1] = area[2] = 0;
-    while (!s->sorted && begin < s->facing_count && axis_of_facing(s, begin) < 0) begin++;
-    if (begin == s->facing_count) return 0;
-    sort_facings(s); // sums depend on the order
     for (size_t i = 0; i < s->facing_count; i++) {
         int axis = axis_of_facing(s, i);
         if (axis >= 0) area[axis] += s->facings[i].area;
