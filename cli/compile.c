@@ -3,6 +3,7 @@
 #include "base/timer.h"
 #include "build/write.h"
 #include "cli/cli.h"
+#include "cli/heap.h"
 #include "cli/paths.h"
 #include "cli/report.h"
 #include "format/output.h"
@@ -154,6 +155,7 @@ static int compile(const request *request) {
     cli_progress_start(&progress, (cli_progress_mode)request->progress);
     enf_status status = cli_job_prepare(&job, &request->settings, &error);
     if (!status) status = open_outputs(request, &outputs, &error);
+    if (request->settings.pvs >= CLI_PVS_METHOD + (int)ENF_METHOD_LP) cli_heap_divide(); // whole numbers
     if (!status) status = cli_job_run(&job, &request->inputs, &progress, &error);
     if (!status && cli_was_interrupted()) status = ENF_NO_RESOURCES;
     if (!status) status = write_outputs(request, &job, &outputs, &progress, &error);

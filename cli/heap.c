@@ -22,6 +22,8 @@
 /// Larger arrays, bytes, are maps of their own where the heap would have to grow for them; so many at most.
 enum { MAPPED = 2 << 20, MOST_MAPS = 1 << 16 };
 
+enum { THREADS = 64 }; ///< with a heap of their own, at most
+
 enum { NEVER = -1 }; ///< as a size: the largest
 
 enum { SMALLEST_PAGE = 4096, LEFT = 1 << 20 }; ///< bytes; of the space, for what is there already
@@ -43,6 +45,10 @@ void cli_heap_prepare(void) {
     mallopt(M_MMAP_THRESHOLD, MAPPED);
 }
 
+void cli_heap_divide(void) {
+    mallopt(M_ARENA_MAX, THREADS);
+}
+
 void cli_heap_touch(uint64_t bytes) {
     size_t space = count_space() - LEFT, touched = bytes < space ? (size_t)bytes : space;
     volatile char *data = enf_array_new(touched, 1);
@@ -55,6 +61,7 @@ void cli_heap_trim(void) {
 }
 #else
 void cli_heap_prepare(void) {}
+void cli_heap_divide(void) {}
 void cli_heap_touch(uint64_t bytes) {
     (void)bytes;
 }

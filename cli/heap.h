@@ -3,7 +3,8 @@
 //
 // A page that is written for the first time costs more than a microsecond on a virtual machine, and looking
 // up small pages of a large world costs time at every cache miss. So address space is set apart at the start,
-// large pages are asked for it, and what is freed there stays for what comes next.
+// large pages are asked for it, and what is freed there stays for what comes next. It is one for all threads
+// unless that is asked for.
 #ifndef CLI_HEAP_H
 #define CLI_HEAP_H
 
@@ -13,6 +14,10 @@
 /// What does not fit in takes large arrays from the system, and gives them back. Without glibc nothing
 /// happens.
 void cli_heap_prepare(void);
+
+/// Threads get heaps of their own: for work that takes memory often, in small pieces (exact numbers), where
+/// they would wait for each other. To be called before there are any.
+void cli_heap_divide(void);
 
 /// Takes so much memory for the heap, as far as there is space set apart, so that nothing waits for it later.
 /// For measuring: the host of a virtual machine may have to be asked for memory, at a cost that is neither

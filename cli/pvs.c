@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 #include "cli/cli.h"
+#include "cli/heap.h"
 #include "cli/job.h"
 #include "cli/paths.h"
 #include "cli/pvs_report.h"
@@ -211,6 +212,7 @@ static int run(const request *request) {
     outputs outputs = {0};
     cli_progress progress = {0};
     double started = enf_timer_now();
+    cli_heap_divide();
     prepare(&result, request, &progress);
     if (request->leads) cli_progress_report(&progress, "read", 0);
     enf_status status = request->leads ? open_outputs(request, &outputs, &error) : ENF_OK;
