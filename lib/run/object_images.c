@@ -28,27 +28,30 @@ static bool is_mirror(const enf_passage *passage, int32_t from) {
     return passage->to == from && enf_affine_determinant(passage->matrix) < 0;
 }
 
+/// The objects of a list that reach into a portal. (An image too large for doubles is left out.)
+static void put_images(enf_seen_list *list, const enf_objects *objects, int32_t of_list, enf_query *query,
+                       const enf_visible *visible, int32_t portal, const enf_passage *passage) {
+    for (int32_t link = objects->lists[of_list].first; link >= 0; link = objects->links[link].behind) {
+        const int32_t object = objects->links[link].object;
+        const enf_object_slot *slot = &objects->slots[object];
+        if (!enf_query_enters(query, &slot->shape, portal, passage)) continue;
+        const enf_shape image = enf_shape_image(&slot->shape, passage->matrix);
+        if (!enf_shape_is_valid(&image)) continue;
+        enf_query_flood(query, NULL, passage->to, &image);
+        put_image(list, visible, query,
+                  (enf_object_seen){.object = {(uint32_t)object + 1, slot->generation}, .portal = portal});
+    }
+}
+
 void enf_object_images_add(enf_seen_list *list, const enf_objects *objects, enf_query *query,
                            const enf_instance *instance, const enf_visible *visible) {
-    const int32_t *portals;
+    const int32_t *portals, everywhere = enf_objects_list(objects, ENF_LIST_EVERYWHERE);
     const int32_t count = enf_instance_transforms(instance, &portals);
     for (int32_t i = 0; i < count; i++) {
         const int32_t from = query->view->portals[portals[i]].from;
         const enf_passage passage = enf_instance_passage(instance, query->view, portals[i]);
         if (passage.to < 0 || is_mirror(&passage, from)) continue;
-        const int32_t lists[2] = {from, enf_objects_list(objects, ENF_LIST_EVERYWHERE)};
-        for (int k = 0; k < 2; k++)
-            for (int32_t link = objects->lists[lists[k]].first; link >= 0;
-                 link = objects->links[link].behind) {
-                const int32_t object = objects->links[link].object;
-                const enf_object_slot *slot = &objects->slots[object];
-                if (!enf_query_enters(query, &slot->shape, portals[i], &passage)) continue;
-                const enf_shape image = enf_shape_image(&slot->shape, passage.matrix);
-                if (!enf_shape_is_valid(&image)) continue; // too large for doubles
-                enf_query_flood(query, NULL, passage.to, &image);
-                put_image(list, visible, query,
-                          (enf_object_seen){.object = {(uint32_t)object + 1, slot->generation},
-                                            .portal = portals[i]});
-            }
+        put_images(list, objects, from, query, visible, portals[i], &passage);
+        put_images(list, objects, everywhere, query, visible, portals[i], &passage);
     }
 }

@@ -26,9 +26,9 @@ enum { ENF_AIR_DEPTH_MOST = 1000 };
 
 typedef enum enf_air_outcome { ENF_AIR_DONE, ENF_AIR_TOO_DEEP, ENF_AIR_NO_MEMORY } enf_air_outcome;
 
-/// Builds the tree, on some threads: what comes out is the same for any number. Cut walls are added to
-/// *walls. `size` is the largest coordinate in magnitude. With more leafs than `leafs_most` it is too deep.
-/// *tree is overwritten; free it in any case.
+/// Builds the tree, on some threads: what comes out is the same for any number. It has copies of the
+/// walls that it keeps; *walls is used for scratch, and of no more use. `size` is the largest coordinate in
+/// magnitude. With more leafs than `leafs_most` it is too deep. *tree is overwritten; free it in any case.
 enf_air_outcome enf_air_tree_make(enf_air_tree *tree, enf_walls *walls, double size, int32_t leafs_most,
                                   int threads);
 void enf_air_tree_free(enf_air_tree *tree);
